@@ -258,9 +258,16 @@ def _surface(system: System, orbit: Orbit, segment: int) -> SurfaceLike | None:
         return None
     surface = surface_of(system, orbit.mesh.events[i].switch)
     second = orbit.mesh.events[j]
-    struck = surface_of(system, second.switch).kind == Kind.IMPACT
-    ends = mode_after(surface, second) is not None and not struck
+    other = surface_of(system, second.switch)
+    passes = other.kind == Kind.IMPACT or _let_go_by(other, surface, second)
+    ends = mode_after(surface, second) is not None and not passes
     return surface if surface.releases is not None and ends else None
+
+
+def _let_go_by(other: SurfaceLike, surface: SurfaceLike, event: EventNode) -> bool:
+    """Whether friction is let go where another guard passes 0, as at an intersection of surfaces."""
+    friction = surface.kind == Kind.SLIDING and other.switch == event.switch != surface.switch
+    return friction and mode_after(surface, event) != STUCK
 
 
 def _held(system: System, orbit: Orbit, segment: int) -> Row | None:

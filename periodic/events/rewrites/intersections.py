@@ -14,11 +14,16 @@ line from there on leaves along a ray, not into a sector; the ray is reached fro
 at the line on the near side of the origin already, it passes the origin along the line, on which both other
 guards are the same, and may be let go there:
 
-    a b c0     and  c b c0          c0: c is held from there on
+    a b c0     and  c b a c0        c0: c is held from there on
     a b0       and  c b0 (a c)      (a c): both are crossed as one
     a b        and  c0 (a b) -c     -c: it is let go there
 
-Sliders along a line that are strained where it is crossed first are so on either side.
+Sliders along a line that are strained where it is crossed first are so on either side. Where it is crossed
+twice they slip on once their strain is back where it was, soon after; on the other side they slip all along:
+
+    a b        and  c b a c s       s: sliders along c, strained where it is crossed first, slip on
+
+The second crossing is no event node where there are sliders alone along c.
 """
 
 from __future__ import annotations
@@ -28,7 +33,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from periodic.events.modes import column, of_held, sides, surface_of
+from periodic.events.modes import column, of_held, release, sides, surface_of
 from periodic.events.rewrites.sites import Added, Site
 from periodic.events.rewrites.table import SWAP
 from periodic.events.sideconditions import Length
@@ -68,7 +73,7 @@ def at_intersection(system: System, orbit: Orbit, segment: int) -> bool:
 
 def _windows(count: int, segment: int) -> Iterator[tuple[int, ...]]:
     """Yield the neighbouring event nodes among which the two at the ends of a segment are."""
-    for size in range(2, min(RAYS, count)):
+    for size in range(2, min(RAYS + LINES - 1, count)):
         for before in range(size - 1):
             yield tuple((segment - before + m) % count for m in range(size))
 
@@ -93,19 +98,46 @@ def _parts(orbit: Orbit, nodes: Sequence[int], count: int) -> list[float]:
 
 def _others(system: System, orbit: Orbit, nodes: tuple[int, ...]) -> Iterator[list[EventNode]]:
     """Yield the event nodes on the other side; none where event nodes are about no intersection."""
-    events = [orbit.mesh.events[j] for j in nodes]
+    every = [orbit.mesh.events[j] for j in nodes]
+    count = len(every) - _slipping_on(system, every)
+    nodes, events, again = nodes[:count], every[:count], every[count:]
     along = _along(system, events)
     lines = [_line(system, event) for event in (events[:-1] if along else events)]
+    lines += [] if along else _passed(system, again)
     own = list(dict.fromkeys(line for line in lines if line is not None))
-    if None in lines or len(own) > LINES or len(own) < (1 if along else 2):
+    if len(nodes) < 2 or None in lines or not (1 if along else 2) <= len(own) <= LINES:
         return
     each = [own] if len(own) == LINES else _completed(system, orbit, nodes, own)
     for cycle in each:
         if any(line != cycle[k % LINES] for k, line in enumerate(lines)):
             continue
-        plane = _plane(system, orbit, nodes, cycle)
-        if plane is not None:
-            yield from (plane.word(way) for way in plane.others())
+        plane = _plane(system, orbit, nodes, cycle, len(lines))
+        if plane is not None and _let_go(system, plane.again(system, plane.way)) == _let_go(system, again):
+            yield from (plane.word(system, way) for way in plane.others())
+
+
+def _slipping_on(system: System, events: Sequence[EventNode]) -> int:
+    """How many of some event nodes, at their end, are releases of sliders that one before strains."""
+    strained = {k for event in events for k, mode in event.modes if mode == STUCK}
+    count = 0
+    for event in events[:0:-1]:
+        surface = surface_of(system, event.switch)
+        if surface.kind != Kind.SLIDER or event.switch == surface.switch or surface.switch not in strained:
+            break
+        count += 1
+    return count
+
+
+def _passed(system: System, again: Sequence[EventNode]) -> list[int]:
+    """The lines with sliders alone that slip on: they have been crossed again, at no event node."""
+    lines = [twins(system, surface_of(system, event.switch).switch) for event in again]
+    return [min(line) for line in lines if all(surface_of(system, k).kind != Kind.SLIDING for k in line)]
+
+
+def _let_go(system: System, events: Sequence[EventNode]) -> set[tuple[int, int]]:
+    """The guards of sliders that slip on at event nodes, with their modes."""
+    own = {(surface_of(system, event.switch).switch, event.direction) for event in events}
+    return own | {pair for event in events for pair in event.modes}
 
 
 def _along(system: System, events: Sequence[EventNode]) -> bool:
@@ -165,6 +197,18 @@ class _Line:
             guard, -side * self.signs[guard], modes=tuple((k, STUCK) for k in (*held, *strained))
         )
 
+    def again(self, system: System) -> EventNode | None:
+        """The event node at which the sliders slip on; None where none has been strained."""
+        modes = self.carried()
+        if not modes:
+            return None
+        (guard, way), *others = modes
+        return EventNode(release(surface_of(system, guard), way), way, modes=tuple(others))
+
+    def carried(self) -> tuple[tuple[int, int], ...]:
+        """The modes of the sliders on the side on which the orbit comes, where they slip."""
+        return tuple((k, self.side * self.signs[k]) for k in self.strained)
+
 
 @dataclass(frozen=True)
 class _Way:
@@ -212,7 +256,14 @@ class _Plane:
         side = self.lines[line].side
         return side if way.crossed.count(line) % 2 == 0 else -side
 
-    def word(self, way: _Way) -> list[EventNode]:
+    def again(self, system: System, way: _Way) -> list[EventNode]:
+        """The event nodes at which sliders along lines that are crossed twice slip on."""
+        crossed = [*way.crossed, *(line for line in self.cycle if way.along and line != way.held)]
+        twice = (line for line in self.cycle if crossed.count(line) == 2)
+        each = (self.lines[line].again(system) for line in twice)
+        return [node for node in each if node is not None]
+
+    def word(self, system: System, way: _Way) -> list[EventNode]:
         """The event nodes of a way."""
         found, counts = list[EventNode | None](), dict.fromkeys(self.cycle, 0)
         for line in way.crossed:
@@ -222,7 +273,7 @@ class _Plane:
             found.append(self.lines[way.held].node(counts[way.held], stops=True))
         if way.along:
             found.append(self._at_once(way, counts))
-        return [node for node in found if node is not None]
+        return [node for node in [*found, *self.again(system, way)] if node is not None]
 
     def _at_once(self, way: _Way, counts: dict[int, int]) -> EventNode | None:
         """The event node at which the two lines beside the one held are crossed as one."""
@@ -234,7 +285,8 @@ class _Plane:
         line = self.lines[way.held]
         assert line.friction is not None
         freed = line.friction, line.signs[line.friction] * way.released
-        return replace(joined, modes=(*joined.modes, freed))
+        onward = line.carried() if way.released == line.side else ()
+        return replace(joined, modes=(*joined.modes, freed, *onward))
 
 
 def _joined(nodes: Sequence[EventNode]) -> EventNode | None:
@@ -246,8 +298,13 @@ def _joined(nodes: Sequence[EventNode]) -> EventNode | None:
     return replace(first, modes=(*first.modes, *own, *second.modes))
 
 
-def _plane(system: System, orbit: Orbit, nodes: tuple[int, ...], cycle: list[int]) -> _Plane | None:
-    """The lines of event nodes; None where their guards are independent, or friction holds at one before."""
+def _plane(
+    system: System, orbit: Orbit, nodes: tuple[int, ...], cycle: list[int], count: int
+) -> _Plane | None:
+    """The lines of event nodes, of which so many are crossed or held in turn.
+
+    None where their guards are independent, or friction holds at one before.
+    """
     events = [orbit.mesh.events[j] for j in nodes]
     if len(cycle) != LINES or not holding(system, cycle[-1], cycle[:-1]):
         return None
@@ -261,8 +318,7 @@ def _plane(system: System, orbit: Orbit, nodes: tuple[int, ...], cycle: list[int
     changed = {k for event in events for k, _ in event.modes}
     if len(lines) < LINES or changed - {k for own in lines.values() for k in own.signs}:
         return None
-    count = len(events) - along - len(stops)
-    crossed = tuple(cycle[k % LINES] for k in range(count))
+    crossed = tuple(cycle[k % LINES] for k in range(count - len(stops)))
     if not held:
         return _Plane(lines, cycle, _Way(crossed))
     if lines[held[0]].friction is None:  # friction that stops there is that of another line
@@ -280,8 +336,9 @@ def _freed(line: _Line, event: EventNode) -> int:
 def _found(
     system: System, orbit: Orbit, nodes: tuple[int, ...], line: int, held: Sequence[int]
 ) -> _Line | None:
-    """A line near event nodes; None where friction holds along it before, or only sliders that no event node
-    strains.
+    """A line near event nodes; None where friction holds along it before, or only sliders that do not slip.
+
+    Sliders that slip there all along are strained where it is crossed.
     """
     signs = twins(system, line)
     friction = [k for k in signs if surface_of(system, k).kind == Kind.SLIDING]
@@ -290,8 +347,11 @@ def _found(
         own = [k for k, mode in event.modes if k in signs and k not in friction and mode == STUCK]
         strained = strained or tuple(own)
         side = side or -_way(system, event, line, held)
-    if friction and not side:
-        side = signs[friction[0]] * _side(system, orbit, nodes, friction[0])
+    if not side:
+        slips = {k: _side(system, orbit, nodes, k) for k in signs}
+        strained = strained or tuple(k for k, way in slips.items() if k not in friction and way)
+        first = next(iter((*friction, *strained)), None)
+        side = 0 if first is None else signs[first] * slips[first]
     if not side or not (friction or strained):
         return None
     return _Line(dict(signs), friction[0] if friction else None, strained, side)

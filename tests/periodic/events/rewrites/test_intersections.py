@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from support.surfaces import at, three_joints
+from support.surfaces import Surfaces, at, joint, three_joints
 
 from periodic.events.rewrites import table
+from periodic.events.rewrites.ends import excursions
 from periodic.events.rewrites.intersections import intersections
 from periodic.events.rewrites.swaps import swapped
 from periodic.orbit.mesh import EventNode
@@ -51,7 +52,13 @@ def test_three_events_change_places_where_one_guard_depends_on_the_others(order:
             (event("d+0"), 4.0),
             (EventNode(9, -1), 5.0),
         ],
-        [(event("x+"), 1.0), (event("y+"), 1.1), (EventNode(7, 1), 1.4), (EventNode(9, 1), 4.0)],
+        [
+            *zip(map(event, ("x+", "y+")), (1.0, 1.1), strict=True),
+            (EventNode(7, 1), 1.4),
+            (EventNode(9, 1), 3.0),
+            (event("d-0"), 4.0),
+            (EventNode(9, -1), 5.0),
+        ],
         [(event("x+"), 1.0), (EventNode(9, 1), 1.1), (event("d+0"), 1.4), (event("y+"), 4.0)],
         [(event("x+"), 1.0), (event("y+"), 1.1), (event("d+0"), 1.4)],
     ],
@@ -100,6 +107,59 @@ def test_the_rays_on_the_other_side(word: str, others: list[str]) -> None:
     words = [[each.event for each in site.added] for site in found]
     assert sorted(map(str, words)) == sorted(str(list(map(passed, other.split()))) for other in others)
     assert intersections(three_joints(Kind.SLIDING), orbit, 0)[0] in found
+
+
+def beside_friction() -> Surfaces:
+    """Three joints with friction, and a slider 10 (11, 12) of x - y beside that of x - y."""
+    surfaces, weights = three_joints(Kind.SLIDING).surfaces, three_joints().weights
+    difference = [[1.0, -1.0]] * 3
+    return Surfaces([*surfaces, joint(4, 10, Kind.SLIDER)], [*weights.tolist(), *difference])
+
+
+X, Y = event("x+"), event("y+")
+
+
+@pytest.mark.parametrize(
+    ("system", "strained"),
+    [
+        (
+            beside_friction(),
+            [EventNode(6, -1, modes=((10, STUCK),)), Y, X, EventNode(6, 1), EventNode(11, 1)],
+        ),
+        (three_joints(), [EventNode(6, -1, modes=((6, STUCK),)), Y, X, EventNode(7, 1)]),
+    ],
+    ids=["beside friction", "a slider alone"],
+)
+def test_sliders_that_are_strained_on_one_side_alone_slip_on(
+    system: Surfaces, strained: list[EventNode]
+) -> None:
+    """Assert both words: x passes 0 before y, and a slider of x - y slips on upwards, or is strained between.
+
+    Where the slider is held all along nothing becomes of it, and only x and y change places.
+    """
+    free = X, Y
+    slips = strained[-1], 4.0
+    there = intersections(system, at(*near(*free), slips, (EventNode(9, -1), 5.0)), 0)
+    assert [each.event for each in there[0].added] == strained
+    back = intersections(system, at(*near(*strained), *FAR), 0)
+    assert [each.event for each in back[0].added] == list(free)
+    assert back[0].removed == tuple(range(len(strained)))
+    stuck = EventNode(strained[0].switch, -1, modes=strained[0].modes), 5.0
+    held = intersections(system, at(*near(*free), slips, stuck), 0)
+    assert all(EventNode(11, 1) not in [each.event for each in site.added] for site in held)
+
+
+def test_a_slider_beside_friction_that_is_let_go_at_the_intersection_goes_with_it() -> None:
+    """Assert it where x - y is held up to there only, and that this is not the end of a stop by itself."""
+    stops = EventNode(6, -1, modes=((6, STUCK), (10, STUCK)))
+    both = EventNode(0, 1, modes=((3, 1), (6, 1), (10, 1)))
+    slips = EventNode(11, 1), 4.0
+    there = intersections(beside_friction(), at(*near(X, Y), slips, (EventNode(9, -1), 5.0)), 0)
+    assert [stops, both] in [[each.event for each in site.added] for site in there]
+    orbit = at(*near(stops, both), *FAR)
+    back = intersections(beside_friction(), orbit, 0)
+    assert [[each.event for each in site.added] for site in back] == [[Y, X], [X, Y]]
+    assert [own.row for own in excursions(beside_friction(), orbit) if own.index == 0] == [table.SWAP]
 
 
 def passed(said: str) -> EventNode:
