@@ -109,6 +109,13 @@ def mode_after(surface: SurfaceLike, event: EventNode) -> int | None:
     return event.direction if passes else None
 
 
+def torn(system: System, surface: SurfaceLike, event: EventNode) -> bool:
+    """Whether friction is let go by a jump of the force as another guard passes 0, short of its own limit."""
+    other = surface_of(system, event.switch)
+    passes = other.switch == event.switch != surface.switch and other.kind != Kind.IMPACT
+    return passes and surface.kind == Kind.SLIDING and mode_after(surface, event) in (PLUS, MINUS)
+
+
 def held_all_along(mesh: Mesh, surface: SurfaceLike) -> bool:
     """Whether a motion is held at a surface all along."""
     return dict(mesh.modes).get(surface.switch) == HELD

@@ -17,7 +17,7 @@ import scipy
 from numpy.typing import NDArray
 
 from periodic.events.impactmodes import thrown
-from periodic.events.modes import group, mode_after, of_kind, relays, sides, sliding, surface_of
+from periodic.events.modes import group, mode_after, of_kind, relays, sides, sliding, surface_of, torn
 from periodic.events.thresholds import AT_EXTREMUM, AT_LEVEL, NOISE, SHALLOW, SLOW_CROSSING
 from periodic.orbit.mesh import EventNode, wrapped
 from periodic.orbit.orbit import Orbit
@@ -348,6 +348,8 @@ class SwitchPolynomials:
         if jump is None:
             return list(self._tied(switch))
         own = group(self.system, self.orbit.mesh, jump)
+        if switch != jump:
+            own = [i for i in own if not torn(self.system, surface, self.orbit.mesh.events[i])]
         own += thrown(self.system, self.orbit, surface_of(self.system, jump))
         return [int(self.orbit.mesh.starts[i]) for i in own]
 

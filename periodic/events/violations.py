@@ -221,7 +221,8 @@ def largest(dense: SwitchPolynomials, *switches: int) -> float:
 def _unforced(dense: SwitchPolynomials, index: int, own: SurfaceLike) -> list[Violation]:
     """The changes of mode at other surfaces that an event node states, but that do not happen there.
 
-    A joint that another's event tears off is within its limits in the modes before, past one in those after.
+    A joint that another's event tears off is within its limits in the modes before, past one in those after;
+    one that stops there, or passes 0, has no speed.
     """
     system, orbit, found = dense.system, dense.orbit, list[Violation]()
     event, start = orbit.mesh.events[index], int(orbit.mesh.starts[index])
@@ -231,8 +232,9 @@ def _unforced(dense: SwitchPolynomials, index: int, own: SurfaceLike) -> list[Vi
         if k == own.switch or surface.releases is None or surface.column is None:
             continue
         before, after = (guards(system, *at, modes_in(system, orbit, j))[0] for j in (start - 1, start))
-        leaves = k if mode == STUCK else release(surface, mode)
-        torn = mode != STUCK and mode * before[leaves] < 0 < mode * after[leaves]
+        let_go = mode != STUCK and dense.modes[start - 1, surface.column] in (STUCK, HELD)
+        leaves = release(surface, mode) if let_go else k
+        torn = let_go and mode * before[leaves] < 0 < mode * after[leaves]
         most = largest(dense, leaves)
         if not torn and abs(before[leaves]) > TOGETHER * most:
             found.append(Violation(Breach.MODE, k, index, mode, 1.0))

@@ -9,7 +9,7 @@ import numpy as np
 
 from periodic.correction.condition import SideCondition
 from periodic.events.impacts import tied
-from periodic.events.modes import group, mode_after, relays, release, returns, surface_of
+from periodic.events.modes import group, mode_after, relays, release, returns, surface_of, torn
 from periodic.events.rewrites.corners import corner
 from periodic.events.rewrites.intersections import at_intersection, intersections
 from periodic.events.rewrites.meetings import meeting, met
@@ -40,9 +40,11 @@ from periodic.events.rewrites.table import (
     SWAP,
     SWITCHING_ABOUT,
     SWITCHING_SLIDING,
+    TEARING,
     Row,
 )
 from periodic.events.rewrites.together import without
+from periodic.events.rewrites.tornoff import thrown_back, torn_off
 from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Speed, speed
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import BESIDE_EXTREMUM, SHALLOW
@@ -105,6 +107,8 @@ def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
         inner = slip_about(system, orbit, i)
         if inner and not both:
             yield Excursion(ADDING_ABOUT, i, segments=(i, inner[-1]))
+        if thrown := thrown_back(system, orbit, i):
+            yield Excursion(TEARING, i, segments=(i, *thrown))
         if corner(system, orbit, i) is not None and i not in about:
             yield Excursion(CORNER, i)
         if i in about:
@@ -152,6 +156,8 @@ def _end(system: System, orbit: Orbit, row: Row, i: int) -> Site:
         return _reversal(system, orbit, i)
     if row is ADDING_ABOUT:
         return _about(system, orbit, i)
+    if row is TEARING:
+        return torn_off(system, orbit, i)
     return _vanishing(system, orbit, row, i)
 
 
@@ -259,15 +265,9 @@ def _surface(system: System, orbit: Orbit, segment: int) -> SurfaceLike | None:
     surface = surface_of(system, orbit.mesh.events[i].switch)
     second = orbit.mesh.events[j]
     other = surface_of(system, second.switch)
-    passes = other.kind == Kind.IMPACT or _let_go_by(other, surface, second)
+    passes = other.kind == Kind.IMPACT or torn(system, surface, second)
     ends = mode_after(surface, second) is not None and not passes
     return surface if surface.releases is not None and ends else None
-
-
-def _let_go_by(other: SurfaceLike, surface: SurfaceLike, event: EventNode) -> bool:
-    """Whether friction is let go where another guard passes 0, as at an intersection of surfaces."""
-    friction = surface.kind == Kind.SLIDING and other.switch == event.switch != surface.switch
-    return friction and mode_after(surface, event) != STUCK
 
 
 def _held(system: System, orbit: Orbit, segment: int) -> Row | None:

@@ -26,6 +26,7 @@ from periodic.events.rewrites.table import (
     ROOT,
     SHORT,
     SWAP,
+    TEARING,
 )
 from periodic.events.rewrites.wholeorbit import WholeOrbit, whole_orbit
 from periodic.events.sideconditions import Clearance
@@ -75,7 +76,7 @@ def _or_end(begins: Begins, before: Orbit, after: Orbit, ending: list[Ends], end
 
 def _alone(ending: list[Ends]) -> list[Ends]:
     """The ends, without swaps within slips that end as a whole."""
-    whole = {j for end in ending if end.site.row is ADDING_ABOUT for j in end.excursion.segments}
+    whole = {j for end in ending if end.site.row in (ADDING_ABOUT, TEARING) for j in end.excursion.segments}
     return [end for end in ending if end.site.row is not SWAP or end.excursion.index not in whole]
 
 

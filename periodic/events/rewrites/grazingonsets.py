@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from periodic.events.modes import group, held_all_along, mode_after, release, surface_of
+from periodic.events.modes import group, held_all_along, mode_after, release, surface_of, torn
 from periodic.events.rewrites.meetings import begun
 from periodic.events.rewrites.reversals import held, short_of
 from periodic.events.rewrites.sites import Added, Site, apart
@@ -25,8 +25,10 @@ from periodic.events.rewrites.table import (
     LIMIT_GRAZING,
     RELAY,
     SWITCHING_SLIDING,
+    TEARING,
     Row,
 )
+from periodic.events.rewrites.tornoff import before_torn
 from periodic.events.rewrites.twins import leading, parted, slipping_together, with_twins
 from periodic.events.sideconditions import Clearance, Limit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
@@ -88,8 +90,9 @@ def sites_of(
         for switch in (surface.switch, *(surface.releases or ())):
             if row_of(orbit, surface, switch) == row:
                 yield from _extrema(dense, surface, switch)
-            if row == ADDING_ABOUT.name and surface.kind == Kind.SLIDING and switch != surface.switch:
-                yield from _before_events(dense, surface, switch)
+            before = row in (ADDING_ABOUT.name, TEARING.name) and switch != surface.switch
+            if before and surface.kind == Kind.SLIDING:
+                yield from (s for s in _before_events(dense, surface, switch) if s.row.name == row)
         if surface.releases is not None:
             each = (_limit(system, orbit, surface, limit) for limit in limits(system, orbit, surface))
             yield from (site for site in each if site is not None and site.row.name == row)
@@ -182,7 +185,12 @@ def _jumped_at(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum)
     node = next(
         (j for j, start in enumerate(orbit.mesh.starts) if start == (at.interval + 1) % orbit.mesh.ntst), None
     )
-    return None if node is None or mode_after(surface, orbit.mesh.events[node]) is not None else node
+    return None if node is None or not _jumps(system, surface, orbit.mesh.events[node]) else node
+
+
+def _jumps(system: System, surface: SurfaceLike, event: EventNode) -> bool:
+    """Whether the force on friction that holds jumps at an event of another surface, and may tear it off."""
+    return mode_after(surface, event) is None or torn(system, surface, event)
 
 
 def _before_event(
@@ -194,6 +202,8 @@ def _before_event(
     stopped at the event because this one held stop with it then.
     """
     event, phase, guard = orbit.mesh.events[node], float(orbit.phases[node]), surface.switch
+    if torn(system, surface, event):
+        return before_torn(system, orbit, surface, node, switch, side, value)
     apart_now = parted(system, orbit, event, node, guard)
     rest = replace(event, modes=tuple(pair for pair in event.modes if pair not in apart_now))
     stop = EventNode(guard, side, modes=((guard, STUCK), *apart_now))
@@ -210,7 +220,7 @@ def _before_events(dense: SwitchPolynomials, surface: SurfaceLike, switch: int) 
     for node, event in enumerate(orbit.mesh.events):
         interval = int(orbit.mesh.starts[node]) - 1
         side = int(sides[interval])
-        if side and mode_after(surface, event) is None and not held_all_along(orbit.mesh, surface):
+        if side and _jumps(system, surface, event) and not held_all_along(orbit.mesh, surface):
             at = Limit(node, switch, side).linearise(system, orbit, ())
             yield _before_event(system, orbit, surface, node, switch, side, at.value / most)
 

@@ -277,20 +277,20 @@ class _Plane:
 
     def _at_once(self, way: _Way, counts: dict[int, int]) -> EventNode | None:
         """The event node at which the two lines beside the one held are crossed as one."""
-        both = (self.lines[line].node(counts[line], stops=False) for line in self.cycle if line != way.held)
-        joined = _joined([node for node in both if node is not None])
-        if joined is None or not way.released:
-            return joined
+        each = (self.lines[line].node(counts[line], stops=False) for line in self.cycle if line != way.held)
+        both = joined([node for node in each if node is not None])
+        if both is None or not way.released:
+            return both
         assert way.held is not None
         line = self.lines[way.held]
         assert line.friction is not None
         freed = line.friction, line.signs[line.friction] * way.released
         onward = line.carried() if way.released == line.side else ()
-        return replace(joined, modes=(*joined.modes, freed, *onward))
+        return replace(both, modes=(*both.modes, freed, *onward))
 
 
-def _joined(nodes: Sequence[EventNode]) -> EventNode | None:
-    """One event node for those at which friction and sliders of one guard change; None for none."""
+def joined(nodes: Sequence[EventNode]) -> EventNode | None:
+    """Return one event node for those at which friction and sliders of one guard change; None for none."""
     if len(nodes) < 2:
         return nodes[0] if nodes else None
     first, second = sorted(nodes, key=lambda node: node.switch in dict(node.modes))

@@ -12,6 +12,7 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     switching-sliding      (+ 0)               (+ -)(- 0)        limit            length
     adding-sliding about w w, in 0             (0 +) w (+ 0)     limit            length
     switching about w      (+ 0) w             (+ -) w (- 0)     limit            length
+    adding-sliding before  (a b -c)            c a b -c          limit            length
     first slips            0 all along         (0 +)(+ 0) and    clearance        length
                                                (0 -)(- 0)
     first departures       0 all along         (0 +)(+ 0)        clearance        length
@@ -20,7 +21,7 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     swap                   a b                 b a               length           length
     swap of three          a b c               c b a             length           length
     round an intersection  a b                 c b a c           length           length
-    and held then          a b c0              c b c0            length           length
+    and held then          a b c0              c b a c0          length           length
     and along it           a b0                c b0 (a c)        length           length
     held up to it          a b                 c0 (a b -c0)      length           length
     merging of stops       a b F               F (a and b)       length           length
@@ -119,6 +120,7 @@ ADDING_SLIDING = Row(name="adding-sliding", grazes=False, power=ROOT, sizes=FLAT
 ADDING_ABOUT = Row(
     name="adding-sliding about another event", grazes=False, power=ROOT, sizes=FLAT, gradual=True
 )
+TEARING = Row(name="adding-sliding before a release", grazes=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
 FIRST_SLIPS = Row(
     name="adding-sliding of what is held all along", grazes=True, power=ROOT, sizes=FLAT, gradual=True
 )

@@ -50,8 +50,20 @@ def parted(
     held = held_at(system, orbit.mesh.events, node, always)
     own = surface_of(system, event.switch).switch
     alone = twins(system, own, [k for k in held if k != guard])
-    both = twins(system, own, held)
+    both = twins(system, own, [*held, guard])
     return tuple(pair for pair in event.modes if pair[0] in both and pair[0] not in alone)
+
+
+def by_itself(
+    system: System, orbit: Orbit, node: int, guard: int, pairs: Sequence[tuple[int, int]]
+) -> EventNode:
+    """Return the event node of what changes at another one only because friction at a guard holds there."""
+    event = orbit.mesh.events[node]
+    held = [*held_at(system, orbit.mesh.events, node, held_throughout(system, orbit.mesh.modes)), guard]
+    alike = twins(system, event.switch, held)
+    first = next((k for k, _ in pairs if surface_of(system, k).kind == Kind.SLIDING), pairs[0][0])
+    stops = tuple((k, mode) for k, mode in pairs if mode == STUCK)
+    return EventNode(first, alike[first] * event.direction, modes=stops)
 
 
 def slipping_together(system: System, orbit: Orbit, sites: Sequence[Site]) -> list[Site]:

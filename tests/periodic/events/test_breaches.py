@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 from support.surfaces import Surfaces, along, joint
 
 from periodic.events import twinguards, violations
+from periodic.events.modes import sides
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.violations import Breach, Violation
 from periodic.orbit.mesh import EventNode
@@ -106,7 +108,8 @@ def test_changes_that_a_node_states_but_that_do_not_happen(
 
     system.switch = switch
     event = EventNode(0, -1, modes=((0, STUCK), (3, mode)))
-    nodes = [(event, 1.0), (UP, 2.0), (EventNode(0, -1), 3.0)]
+    begun = replace(UP, modes=((3, STUCK if mode != STUCK else 1),))
+    nodes = [(event, 1.0), (begun, 2.0), (EventNode(0, -1), 3.0)]
     orbit = along(lambda tau: np.stack([np.sin(tau)] * 2, axis=1), nodes, intervals=12)
     own = system.surfaces[0]
     found = violations._unforced(SwitchPolynomials(system, orbit), 0, own)
@@ -190,7 +193,8 @@ def test_mode_that_an_event_of_another_joint_brings(
     """
     system = Surfaces([joint(), joint(1, 3)], [[0.0]] * 6, [0.5, 0.5, 0.5, *values])
     event = EventNode(0, -1, modes=((0, STUCK), (3, mode)))
-    orbit = along(lambda tau: np.sin(tau)[:, None], [(event, 1.0), (EventNode(1, 1), 3.0)], intervals=8)
+    begun = EventNode(1, 1, modes=((3, STUCK if mode != STUCK else 1),))
+    orbit = along(lambda tau: np.sin(tau)[:, None], [(event, 1.0), (begun, 3.0)], intervals=8)
     dense = SwitchPolynomials(system, orbit)  # type: ignore[arg-type]
     found = violations._unforced(dense, 0, system.surfaces[0])
     assert found == ([Violation(Breach.MODE, 3, 0, mode, 1.0)] if breach else [])
@@ -211,8 +215,42 @@ def test_joint_that_another_tears_off(before: float, after: float, torn: bool) -
         return np.column_stack([np.ones((len(state), 4)), release, np.ones(len(state))])
 
     system.switch = switch
-    nodes = [(EventNode(0, -1, modes=((0, STUCK), (3, 1))), 1.0), (EventNode(1, 1), 3.0)]
+    nodes = [
+        (EventNode(0, -1, modes=((0, STUCK), (3, 1))), 1.0),
+        (EventNode(1, 1, modes=((3, STUCK),)), 3.0),
+    ]
     orbit = along(lambda tau: np.sin(tau)[:, None], nodes, intervals=8)
-    dense: Any = SimpleNamespace(system=system, orbit=orbit, knots=np.ones((8, 5, 6)))
+    dense: Any = SimpleNamespace(
+        system=system, orbit=orbit, knots=np.ones((8, 5, 6)), modes=sides(system, orbit)
+    )
     found = violations._unforced(dense, 0, system.surfaces[0])
     assert found == ([] if torn else [Violation(Breach.MODE, 3, 0, 1, 1.0)])
+
+
+@pytest.mark.parametrize("value", [0.0, 0.1])
+def test_friction_that_passes_with_another_has_no_speed_there(value: float) -> None:
+    """Assert it where it slips one way before the event and the other way after: nothing tears it off."""
+    system = Surfaces([joint(), joint(1, 3)], [[0.0]] * 6, [0.0, 0.0, 0.0, value, -1.0, 1.0])
+    nodes = [(EventNode(0, -1, modes=((3, 1),)), 1.0), (EventNode(3, -1), 3.0)]
+    dense = SwitchPolynomials(system, along(sine, nodes, intervals=8))  # type: ignore[arg-type]
+    found = violations._unforced(dense, 0, system.surfaces[0])
+    assert found == ([Violation(Breach.MODE, 3, 0, 1, 1.0)] if value else [])
+
+
+@pytest.mark.parametrize(("begin", "unmarked"), [(1.5, True), (2.5, False)])
+@pytest.mark.parametrize("torn", [True, False])
+def test_limit_passed_before_an_event_that_tears_the_joint_off(
+    begin: float, unmarked: bool, torn: bool
+) -> None:
+    """Assert that an excursion up to there is one: at its own release it would be the node's own error.
+
+    Joint 3 (4, 5) is held from 1 to 2, its limit s5 = begin - x > 0 with x = tau.
+    """
+    weights = [*[[0.0]] * 5, [-1.0]]
+    system = Surfaces([joint(), joint(1, 3)], weights, [0.0, 0.0, 0.0, 0.0, -1.0, begin])
+    released = EventNode(0, -1, modes=((3, 1),)) if torn else EventNode(5, -1)
+    nodes = [(EventNode(3, 1, modes=((3, STUCK),)), 1.0), (released, 2.0), (EventNode(0, 1), 4.0)]
+    orbit = along(lambda tau: np.mod(tau, 2 * np.pi)[:, None], nodes, intervals=12)
+    dense = SwitchPolynomials(system, orbit)  # type: ignore[arg-type]
+    found = [(e.phase, e.value) for e in dense.unmarked(5, 1)]
+    assert found == ([pytest.approx((2.0, begin - 2.0))] if torn and unmarked else [])

@@ -70,6 +70,9 @@ def test_the_branch_is_the_same_from_the_other_end(case: JointCase) -> None:
         (169, (0.5141, 0.5146), (29, 29)),
         # sliders of the difference slip all along on one side, and are strained for a while on the other
         (104, (1.25, 1.253), (30, 27)),
+        # the difference slips before it is torn off the other way, to either side of what it held together
+        (197, (0.836, 0.8405), (24, 18)),
+        (197, (0.846, 0.849), (18, 24)),
     ],
 )
 def test_round_an_intersection_on_either_side(
