@@ -278,7 +278,9 @@ def _same(system: System, orbit: Orbit, one: Site, other: Site) -> bool:
     if not (isinstance(one.at, Extremum) and isinstance(other.at, Extremum)):
         return one.at == other.at
     if one.row is not GRAZING:
-        return apart(one.at.phase, other.at.phase, orbit) < SLOW_CROSSING
+        turns = [[node for node, _ in site.replaced] for site in (one, other)]
+        held_there = bool(turns[0]) and turns[0] == turns[1]  # at its greatest value all along
+        return held_there or apart(one.at.phase, other.at.phase, orbit) < SLOW_CROSSING
     begin, end = held(system, orbit, one.switch, one.at.phase)
     later = np.mod(other.at.phase - begin + SLOW_CROSSING, orbit.mesh.period)
     return bool(later <= end - begin + 2 * SLOW_CROSSING)

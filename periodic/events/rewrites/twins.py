@@ -26,9 +26,8 @@ def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
     for a while, all sliders that slip are held together, and released together.
     """
     assert isinstance(site.at, Extremum)
-    guard, held = surface_of(system, site.switch).switch, held_in(system, orbit, site.at.interval)
-    stopping = holding(system, guard, held)  # the strain is greatest from where friction stops the motion
-    alike = twins(system, guard, [k for k in held if k not in stopping])
+    guard = surface_of(system, site.switch).switch
+    alike, stopping = _alike(system, orbit, guard, site.at.interval)
     both = {k: sign for k, sign in alike.items() if k != guard}
     if site.row is GRAZING_SLIDING:
         return _grazing(system, orbit, site, guard, both) if both else site
@@ -40,6 +39,16 @@ def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
     joined = replace(orbit.mesh.events[turn], modes=(*orbit.mesh.events[turn].modes, (guard, STUCK)))
     release = replace(site.added[0], phase=float(orbit.phases[turn]))
     return replace(site, added=(release,), replaced=((turn, joined),))
+
+
+def _alike(system: System, orbit: Orbit, guard: int, interval: int) -> tuple[dict[int, int], dict[int, int]]:
+    """The twins of a guard in an interval, with their signs, and friction that stops its motion there.
+
+    The strain of a slider is greatest from where friction stops the motion.
+    """
+    held = held_in(system, orbit, interval)
+    stopping = holding(system, guard, held)
+    return twins(system, guard, [k for k in held if k not in stopping]), stopping
 
 
 def parted(
@@ -83,17 +92,19 @@ def slipping_together(system: System, orbit: Orbit, sites: Sequence[Site]) -> li
 
 
 def _one_slip(system: System, orbit: Orbit, one: Site, other: Site) -> bool:
-    """Whether two sliders slip at once, and stop at event nodes of their own or at one that there is."""
+    """Whether two sliders slip at once, and stop at event nodes of their own or at one that there is.
+
+    If that is where friction stops their strain, it is greatest anywhere from there on until it is let go.
+    """
     if not (one.row is other.row is LIMIT_GRAZING) or len(one.added) != len(other.added):
         return False
     assert isinstance(one.at, Extremum)
     assert isinstance(other.at, Extremum)
     guards = [surface_of(system, site.switch).switch for site in (one, other)]
-    alike = guards[1] in twins(system, guards[0], held_in(system, orbit, one.at.interval))
-    turns = ([node for node, _ in site.replaced] for site in (one, other))
-    return (
-        alike and next(turns) == next(turns) and apart(one.at.phase, other.at.phase, orbit) < BESIDE_EXTREMUM
-    )
+    alike, _ = _alike(system, orbit, guards[0], one.at.interval)
+    turn, same = ([node for node, _ in site.replaced] for site in (one, other))
+    at_once = bool(turn) or apart(one.at.phase, other.at.phase, orbit) < BESIDE_EXTREMUM
+    return guards[1] in alike and turn == same and at_once
 
 
 def _both(system: System, one: Site, other: Site) -> Site:

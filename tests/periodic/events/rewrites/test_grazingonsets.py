@@ -327,8 +327,43 @@ def test_distance_of_sites(one: Any, other: Any, distance: float) -> None:
     def site(given: tuple[int, Any]) -> Any:
         switch, at = given
         place = Extremum(switch, 0, 0.0, at, 0.0) if isinstance(at, float) else at
-        return SimpleNamespace(switch=switch, at=place, row=table.IMPACT)
+        return SimpleNamespace(switch=switch, at=place, row=table.IMPACT, replaced=())
 
     assert grazingonsets._distance(site(one), site(other), sine()) == pytest.approx(distance)
     same = distance < 1e-3
     assert grazingonsets._same(system(), sine(), site(one), site(other)) is same
+
+
+def test_sliders_whose_strain_friction_holds_slip_at_once() -> None:
+    """Assert one site for two sliders at their limits from 2 to 3, as long as friction holds their strain.
+
+    It is greatest anywhere between these; they are let go before 2, and stop there with the friction.
+    """
+    kinds = Kind.SLIDER, Kind.SLIDER, Kind.SLIDING
+    surfaces = [joint(k, 3 * k, kind) for k, kind in enumerate(kinds)]
+    rate, strain = [1.0, 0.0], [0.0, 1.0]
+    weights = [rate, strain, strain] * 2 + [rate, [0.0, 0.0], [0.0, 0.0]]
+    system: Any = Surfaces(surfaces, weights, [0.0, -1.0, 2.0] * 2 + [0.0, -1.0, 1.0])
+    both = (0, STUCK), (3, STUCK)
+    nodes = [
+        (EventNode(0, 1, modes=both), 0.5),
+        (EventNode(6, -1, modes=((6, STUCK),)), 2.0),
+        (EventNode(8, -1), 3.0),
+        (EventNode(2, -1, modes=((3, -1),)), 5.0),
+    ]
+
+    def states(tau: Any) -> Any:
+        far = np.where(tau < 2.0, 2.0 - tau, np.minimum(3.0 - tau, 0.0))
+        return np.column_stack([2 * far, 1.0 - far**2])
+
+    orbit = along(states, nodes)
+    sites = grazingonsets.sites_of(system, orbit, table.LIMIT_GRAZING.name)
+    every = [site for site in sites if site.switch in (1, 4)]
+    assert len(every) > 4
+    for own in (every[0], every[-1]):
+        (site,) = grazingonsets.at_once(system, orbit, own)
+        (added,) = site.added
+        assert {added.event.switch, *(k + 1 for k, _ in added.event.modes)} == {1, 4}
+        assert added.at(0.1)[1] == pytest.approx(1.9)
+        ((node, stops),) = site.replaced
+        assert node == 1 and dict(stops.modes) == {6: STUCK, 0: STUCK, 3: STUCK}
