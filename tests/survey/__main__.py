@@ -36,12 +36,12 @@ def main() -> int:
                 print(
                     f"{kind} {seed}: {found.told}, {found.points} points, {found.seconds:.1f} s", flush=True
                 )
-                for said in (*found.wrong, *found.gaps):
+                for said in (*found.wrong, *found.strays, *found.gaps):
                     print(f"    {said}", flush=True)
     else:
         rows = [done[model] for model in models() if model in done]
         given.page.write_text(page(rows), "utf-8")
-    return int(any(found.wrong for found in done.values()))
+    return int(any(found.wrong or found.strays for found in done.values()))
 
 
 if __name__ == "__main__":

@@ -27,7 +27,8 @@ points, {newton} Newton iterations and {seconds:g} s of CPU; those with several 
 {judged} points of each, drawn at random, are judged: orbit and multipliers by an event-exact solution in
 closed form or by Taylor's series, that shares nothing with the packages (`tests/reference/contact.py` with
 `closer.py` in extended precision, `tests/reference/joints`). A point is wrong where an error is more
-than ten times what the point claims and more than 1e-5, or where its stability is not so. `make survey`
+than ten times what the point claims and more than 1e-5, or where its stability is not so. At every
+point the modes of all joints are looked at on samples as well (`tests/survey/sampled.py`). `make survey`
 runs them, in the time of the last column.
 
 Engine at {engines}.
@@ -51,6 +52,7 @@ def page(rows: Sequence[Row]) -> str:
     )
     parts = [begun, _summary(rows), _table(rows)]
     parts += [_told("Wrong", ((row, said) for row in rows for said in row.wrong))]
+    parts += [_told("Outside their words on samples", ((row, said) for row in rows for said in row.strays))]
     parts += [_told("Left open by the ledger", ((row, said) for row in rows for said in row.gaps))]
     parts += [_told("Not judged", ((row, said) for row in rows for said in row.unjudged))]
     parts += [_told("Not traced to the end", ((r, _ended(r)) for r in rows if r.fate != FATES[0]))]

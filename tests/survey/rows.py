@@ -20,6 +20,7 @@ from support.drawn.jointcases import DOWN, UP, JointCase, drawn_joints
 import periodic as per
 from reports.studies.extremes.survey import within
 from reports.studies.pages.engine import current
+from survey.sampled import strays
 
 TOL = 1e-6
 
@@ -74,8 +75,9 @@ class Row:
 
     retraced: whether one that came back did so at the orbit where it began, as far as peaks to peak say.
     shortfall: its points whose estimates exceed the tolerance, as the branch says. unjudged: points that
-    the reference does not follow. ratio: the largest error over what is claimed, at least the tolerance.
-    engine: the last commit that changed the engine that traced it, with a + where there were changes besides.
+    the reference does not follow. strays: points, of all, that do not keep their words on samples.
+    ratio: the largest error over what is claimed, at least the tolerance. engine: the last commit that
+    changed the engine that traced it, with a + where there were changes besides.
     """
 
     kind: str
@@ -93,6 +95,7 @@ class Row:
     unjudged: tuple[str, ...] = ()
     engine: str = ""
     retraced: bool = True
+    strays: tuple[str, ...] = ()
 
     @property
     def fate(self) -> str:
@@ -175,6 +178,7 @@ def _row(kind: str, seed: int, count: int) -> Row:
         tuple(map(str, branch.unaccounted)),
         tuple(verdict.unjudged),
         retraced=_retraced(branch, [output.name for output in case.system.outputs]),
+        strays=tuple(strays(case.system, branch)),
     )
 
 

@@ -7,10 +7,13 @@ from pathlib import Path
 
 import pytest
 
+import periodic as per
+from periodic.events import switchpolynomials
 from reports.studies.pages.engine import current
 from survey import rows as surveyed
 from survey.page import page
-from survey.rows import BACK, Limits, Row, models, read, row, write
+from survey.rows import BACK, Limits, Row, drawn, models, read, row, write
+from survey.sampled import strays
 
 
 def test_all_models_are_drawn_once() -> None:
@@ -85,6 +88,22 @@ def test_page_names_engines() -> None:
         "\nEngine at commit `abc1` (2 models), commit `abc0` (1 models), commits not recorded (1 models).\n"
         in told
     )
+
+
+def test_points_that_do_not_keep_their_words(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that samples show friction past its limit before an event that tears it off.
+
+    As long as it looked for that at the joint's own event nodes alone, such points claimed 1e-10.
+    """
+    case = drawn("joints", 197)
+    bounds = (0.846, 0.86)
+    right = per.trace(case.system, "Omega", bounds, start=bounds[0], tol=1e-6)
+    assert strays(case.system, right) == []
+    monkeypatch.setattr(switchpolynomials, "torn", lambda *_: False)
+    wrong = per.trace(case.system, "Omega", bounds, start=bounds[0], tol=1e-6)
+    told = strays(case.system, wrong)
+    assert told and f"Omega {wrong[-1].parameter!r}: " in told[-1]
+    assert all("d(q0 - q2)/dt = 0" in each and "outside its mode" in each for each in told)
 
 
 def test_joints_are_judged() -> None:
