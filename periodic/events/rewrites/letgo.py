@@ -40,29 +40,29 @@ def slip_that_joins(system: System, orbit: Orbit, swap: Excursion) -> Site | Non
     if len(both) < 2:
         return None
     before = _at_once(both, orbit.mesh.events)
-    for site, size in _slips(system, orbit, both):
+    for site, size in _slips(system, orbit, [slider for slider, _ in both]):
         if _at_once(both, rewritten(system, orbit, [site], size)[0]) > before:
             return site
     return None
 
 
 def _slips(system: System, orbit: Orbit, sliders: list[SurfaceLike]) -> Iterator[tuple[Site, float]]:
-    """Yield the slips of sliders that may end or begin, with sizes."""
+    """Yield the slips of sliders that may end or begin, with sizes; what is nearest to its limit first."""
     for slip in excursions(system, orbit):
         if slip.row is LIMIT_GRAZING and surface_of(system, orbit.mesh.events[slip.index].switch) in sliders:
             yield ends(system, orbit, slip)[0], slip.size(system, orbit)
-    for site in sites_of(system, orbit, LIMIT_GRAZING.name, sliders):
+    sites = sites_of(system, orbit, LIMIT_GRAZING.name, sliders)
+    for site in sorted(sites, key=lambda site: abs(site.value)):
         yield site, LIMIT_GRAZING.least
 
 
-def _slider(system: System, event: EventNode) -> SurfaceLike | None:
-    """The slider that an event node lets go; None where it is another event."""
+def _slider(system: System, event: EventNode) -> tuple[SurfaceLike, int] | None:
+    """The slider that an event node lets go, and its mode then; None where it is another event."""
     surface = surface_of(system, event.switch)
     mode = mode_after(surface, event) if surface.kind == Kind.SLIDER else None
-    return None if mode is None or mode == STUCK else surface
+    return None if mode is None or mode == STUCK else (surface, mode)
 
 
-def _at_once(sliders: list[SurfaceLike], events: tuple[EventNode, ...]) -> int:
-    """The number of event nodes at which all sliders are let go."""
-    each = ([mode_after(slider, event) for slider in sliders] for event in events)
-    return sum(None not in modes and STUCK not in modes for modes in each)
+def _at_once(sliders: list[tuple[SurfaceLike, int]], events: tuple[EventNode, ...]) -> int:
+    """The number of event nodes at which all sliders are let go, each to the side that is given."""
+    return sum(all(mode_after(slider, event) == way for slider, way in sliders) for event in events)
