@@ -196,16 +196,15 @@ def _ending(
     size, last = row.size_below(half), False
     if row.by_speed and size >= half:
         return None
-    site = ends(system, before, excursion)[0]
     if row in (ADDING_SLIDING, LIMIT_GRAZING):
-        jump = sliding(system, site.switch)
+        jump = sliding(system, ends(system, before, excursion)[0].switch)
         assert jump is not None
         last = longest_slip(system, before, jump) <= 2 * now
         size = min(LONGEST, half) if last else size
     if then > (max(half, size) if row.power == ROOT and not (last or row.gradual) else size):
         return None
     final = last or size <= row.least
-    part = row.part(now, then, size)
+    part, site = row.part(now, then, size), ends(system, before, excursion)[0]
     name = _name(system, site, last)
     return Ends(system, excursion, site, size * unit, final, last, part, shortest, name)
 
