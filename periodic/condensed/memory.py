@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from periodic.condensed.floquet import ALL_KEPT_UP_TO, LEADING
@@ -16,6 +17,15 @@ KEPT = 6
 
 SOLVING = 6
 """Matrices that exist at once while equations are set up and solved. Two more are kept with each orbit."""
+
+CACHE = 2.0**20
+"""Bytes that are solved for at once: what a core's own cache holds, about. Any will do; more are slower."""
+
+
+def portions(intervals: int, each: float) -> Iterator[slice]:
+    """Yield so many of `intervals` at once as CACHE holds of `each` bytes."""
+    count = max(int(CACHE / each), 1)
+    yield from (slice(first, min(first + count, intervals)) for first in range(0, intervals, count))
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from periodic.condensed.carried import Carried
 from periodic.condensed.coupled import Coupled
+from periodic.condensed.memory import portions
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 
@@ -98,53 +99,69 @@ class Transfer:
 
     def _solved(self) -> Array:
         """Active forces and own states of the intervals by (c, 1, dphi, dp), (N, m, w)."""
-        system, given, n = self.system, self.given, self.n
-        rows = -given.rows.forces[:, system.active]
-        if self.own:
-            rows = np.concatenate([rows, given.rows.own], axis=1)
         count, points = self.orbit.stages.shape[:2]
-        each, forces = rows.shape[1], len(system.active)
-        rows = rows.reshape(count, points, each, -1)
+        each = points * (len(self.system.active) + self.own)
+        found = np.empty((count, each, self.width))
+        for some in portions(count, each * (self.forces + self.width) * found.itemsize):
+            found[some] = self._solved_on(some)
+        if not np.isfinite(found).all():
+            raise FloatingPointError("the equations of an interval are not finite")
+        return found
+
+    def _solved_on(self, some: slice) -> Array:
+        """Those of some intervals."""
+        system, given, n = self.system, self.given, self.n
+        points, s, forces = self.orbit.stages.shape[1], len(system.places), len(system.active)
+        here = slice(some.start * points, some.stop * points)
+        rows = -given.rows.forces[here, system.active]
+        if self.own:
+            rows = np.concatenate([rows, given.rows.own[here]], axis=1)
+        each = rows.shape[1]
+        rows = rows.reshape(-1, points, each, rows.shape[2])
+        count = len(rows)
         by_place = rows[..., [1 + n + k for k in system.places]]
-        s = len(system.places)
-        block = by_place @ self.by_forces.reshape(count, points, s, -1)
-        right = by_place @ self.by_given.reshape(count, points, s, -1)
+        block = by_place @ self.by_forces[some].reshape(count, points, s, -1)
+        right = by_place @ self.by_given[some].reshape(count, points, s, -1)
         right[..., self.size] += rows[..., 0]
         right[..., self.size + 1 :] += rows[..., 1 + 2 * n :]
         same, ones = np.arange(points), np.arange(forces)
         block[:, same[:, None], ones, same[:, None] * forces + ones] += 1.0
+        width = self.orbit.grid.width[some]
         if self.own:
-            self._begun(rows, right)
+            self._begun(some, rows, right)
         carried = Carried.of(rows, system.others, n, forces) if self.own else None
         if carried is not None:
             rates = self.orbit.mesh.scheme.stage_rates[:, 1:]
-            found = carried.solved(block, right, rates, self.orbit.grid.width)
-        else:
-            whole = np.concatenate([block, self._inside(rows)], axis=3) if self.own else block
-            size = points * each
-            found = np.linalg.solve(whole.reshape(count, size, size), -right.reshape(count, size, -1))
-        if not np.isfinite(found).all():
-            raise FloatingPointError("the equations of an interval are not finite")
-        return found.astype(float, copy=False)
+            return carried.solved(block, right, rates, width).astype(float, copy=False)
+        whole = np.concatenate([block, self._inside(rows, width)], axis=3) if self.own else block
+        size = points * each
+        found = np.linalg.solve(whole.reshape(count, size, size), -right.reshape(count, size, -1))
+        return np.asarray(found.astype(float, copy=False))
 
-    def _inside(self, rows: Array) -> Array:
+    def _inside(self, rows: Array, width: Array) -> Array:
         """What own states at the points do there, (N, a, rows, a o)."""
-        n, others, orbit = self.n, self.system.others, self.orbit
+        n, others = self.n, self.system.others
         count, points, each = rows.shape[:3]
-        weights = orbit.mesh.scheme.stage_rates / orbit.grid.width[:, None, None]
+        weights = self.orbit.mesh.scheme.stage_rates / width[:, None, None]
         inside = rows[..., 1 + others][:, :, :, None, :] * weights[:, :, None, 1:, None]
         same = np.arange(points)
         inside[:, same, :, same] += np.swapaxes(rows[..., 1 + n + others], 0, 1)
         return np.asarray(inside.reshape(count, points, each, -1))
 
-    def _begun(self, rows: Array, right: Array) -> None:
+    def _begun(self, some: slice, rows: Array, right: Array) -> None:
         """Add what own states do at the beginning, and where mesh points are no ends yet."""
         others, orbit = self.system.others, self.orbit
-        weights = orbit.mesh.scheme.stage_rates / orbit.grid.width[:, None, None]
+        weights = orbit.mesh.scheme.stage_rates / orbit.grid.width[some, None, None]
         begun = rows[..., 1 + others] * weights[:, :, None, :1]
         right[..., self.modes : self.size] += begun
-        gap = np.concatenate([orbit.stages[-1:, -1], orbit.stages[:-1, -1]]) - orbit.nodes[:-1]
-        right[..., self.size] += np.einsum("nare,ne->nar", begun, gap[:, others])
+        right[..., self.size] += np.einsum("nare,ne->nar", begun, self._gaps[some])
+
+    @cached_property
+    def _gaps(self) -> Array:
+        """How far own states at the ends of intervals are from the mesh points, (N, o)."""
+        stages, others = self.orbit.stages, self.system.others
+        ends = np.concatenate([stages[-1:, -1], stages[:-1, -1]])
+        return np.asarray((ends - self.orbit.nodes[:-1])[:, others])
 
     @cached_property
     def steps(self) -> Array:

@@ -11,7 +11,7 @@ from support.cantilevers import cantilever, cubic
 
 import periodic as per
 import symbolic as sym
-from periodic.condensed.memory import Memory
+from periodic.condensed.memory import CACHE, Memory, portions
 
 
 def joint(tip: Any) -> list[sym.Part]:
@@ -46,3 +46,13 @@ def test_most_intervals_are_those_that_fit() -> None:
     assert given.peak(most) <= 1e9 < given.peak(most + 1)
     assert given.most(1000, 1e12) == 1000
     assert given.most(1000, 1.0) == 0
+
+
+@pytest.mark.parametrize(
+    ("intervals", "each", "at_once"), [(7, CACHE / 3, 3), (6, CACHE / 3, 3), (4, 2 * CACHE, 1)]
+)
+def test_portions_are_all_intervals_in_turn(intervals: int, each: float, at_once: int) -> None:
+    """Assert that no interval is left out, none comes twice, and none comes with more than CACHE holds."""
+    found = list(portions(intervals, each))
+    assert [k for some in found for k in range(intervals)[some]] == list(range(intervals))
+    assert max(some.stop - some.start for some in found) == at_once

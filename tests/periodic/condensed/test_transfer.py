@@ -7,7 +7,7 @@ import pytest
 from support.drawn.jointcases import drawn_joints
 
 import periodic as per
-from periodic.condensed import operator
+from periodic.condensed import memory, operator
 from periodic.condensed import transfer as transfers
 from periodic.condensed.linearised import SplitLinearisation
 from periodic.condensed.operator import CondensedOperator
@@ -48,3 +48,14 @@ def test_is_the_same_as_column_by_column(seed: int, monkeypatch: pytest.MonkeyPa
         assert np.abs(ours - other).max(initial=0.0) <= 1e-10 * max(
             1.0, float(np.abs(other).max(initial=0.0))
         )
+
+
+def test_intervals_are_solved_for_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert the same forces and own states, to rounding, one interval at a time and all at once."""
+    equations, _ = linearised(122, joined=True, monkeypatch=monkeypatch)
+    assert equations.transfer is not None
+    kept, found = equations.transfer.kept, []
+    for cache in (1.0, 1e12):
+        monkeypatch.setattr(memory, "CACHE", cache)
+        found.append(transfers.Transfer(equations.system, kept).unknowns)
+    assert np.abs(found[0] - found[1]).max() <= 1e-12 * np.abs(found[1]).max()
