@@ -221,6 +221,8 @@ class Continuation:
             step = self._steps.take(self.state, base, worded=True)
             if isinstance(step, Refused) and self._reread(self.state.last):
                 yield self.collected[-1]
+                if self.stop is not None:
+                    return
                 base = self._prepared(self.state.last)
                 continue
             if isinstance(step, Refused) and step.unread:
@@ -334,11 +336,15 @@ class Continuation:
         found = reread(self.solver, base, self.control.ds, follow, other)
         if found is None:
             return False
+        bounds, value = (self.solver.problem.low, self.solver.problem.high), found.solution.value
         self.stop = None
         for label in at_once(base, found.solution):
             self._counted(label.value)
             self._emitted(found.solution, label)
-        self._emitted(found.solution, Label.NONE)
+        ends = value in bounds  # it is sought no farther off
+        self._emitted(found.solution, Label.END if ends else Label.NONE)
+        if ends and self.stop is None:
+            self.stop = Stop.bound(bounds, value, self.state.begun.value)
         ds = min(max(found.distance, self.control.ds_min), self.control.ds)
         kept, last = len(self.collected), found.solution
         self.state = replace(

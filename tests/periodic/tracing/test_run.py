@@ -292,6 +292,14 @@ def test_orbit_read_from_a_motion(
     assert not run._reread(solution(2.0)) and len(run.collected) == 4
 
 
+def test_orbit_read_from_a_motion_at_a_bound(run: Continuation, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that the branch ends there: what lies beyond is not in the range."""
+    monkeypatch.setattr(continuation, "reread", lambda *_: Crossed(solution(5.0), 0.1, False))
+    monkeypatch.setattr(continuation, "at_once", lambda *_: [])
+    assert run._reread(solution(4.9)) and labels(run) == [(Label.END, "")]
+    assert run.stop == Stop.bound((0.0, 5.0), 5.0, 1.0)
+
+
 class Kept:
     """A journal that notes what it is given."""
 
