@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from periodic.conditions.twoparameter.grazing import GrazingCondition
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.events.modes import held_all_along
@@ -38,7 +39,7 @@ FOLLOWED = 5
 """Steps along the branch in a place after which it is seen how near the middle is, ..."""
 
 MOST_FOLLOWED = 20
-"""... and how often at the most."""
+"""... and how often at the most. As many points are those that reach one limit followed to one at both."""
 
 MOST_HALVINGS = 8
 """How often a move is halved beyond which other events of the orbit change."""
@@ -86,15 +87,19 @@ def amid(solver: Solver, found: Solution, loose: list[SurfaceLike], sign: float)
 def off_limits(solver: Solver, found: Solution, sign: float, solve: Solve, follow: Follow | None) -> Solution:
     """Return an orbit with the joints that just reach a limit moved away from it: midway, or less far.
 
-    It is the orbit given where no joint is at a limit, or no such orbit is found. solve: finds orbits that
-    may have other events. follow: follows the branch in a place, on which events may change, if it may be.
+    Where events change on the way, it is one at which a joint reaches both limits, from which slips in both
+    directions begin. It is the orbit given where no joint is at one limit, or no such orbit is found. solve:
+    finds orbits that may have other events. follow: follows branches, on which events may change, if it may.
     """
     problem, system = solver.problem, solver.problem.system
     each = at_limit(system, found.orbit)
     loose = [surface for surface in each if surface.place is not None and surface.place[0] != problem.index]
     moved = amid(solver, found, loose, sign)
-    if moved is not found or not loose:
+    if moved is not found or not loose or _at_both(system, found.orbit, loose):
         return moved
+    corner = _at_corner(solver, found, loose, sign, follow) if follow is not None else None
+    if corner is not None:
+        return corner
     followed = _followed(solver, found, loose, sign, follow) if follow is not None else None
     if followed is not None:
         return followed
@@ -152,6 +157,45 @@ def _along_place(
         if off <= first / 2 or stop.reason is not Reason.MAX_POINTS:
             break
     return last
+
+
+def _at_corner(
+    solver: Solver, found: Solution, loose: list[SurfaceLike], sign: float, follow: Follow
+) -> Solution | None:
+    """The nearest orbit at which one of the joints reaches both limits, along those at which it reaches one.
+
+    The places in which a joint can be held lie between its limits: two curves over the parameter, that end
+    where they meet. Midway between them is no way there where one of them turns back in the parameter.
+    """
+    for surface in loose:
+        for way in (1, -1):
+            orbit = _along_limit(solver, found.orbit, surface, int(way * sign), follow)
+            if orbit is not None and _at_both(solver.problem.system, orbit, [surface]):
+                return _fixed(solver, orbit, sign)
+    return None
+
+
+def _along_limit(
+    solver: Solver, orbit: Orbit, surface: SurfaceLike, way: int, follow: Follow
+) -> Orbit | None:
+    """The last orbit along those at which a joint reaches the limit that it is nearest to, one way.
+
+    way: the sign with which the parameter changes at first.
+    """
+    assert surface.place is not None and surface.releases is not None
+    system = solver.problem.system
+    (pull,) = _pulls(system, orbit, [surface])
+    release = surface.releases[0 if pull.off_centre > 0 else 1]
+    name = system.parameters[surface.place[0]].name
+    limit = GrazingCondition(system.switches[release].name)
+    span = float(np.max(orbit.span()))
+    problem = replace(solver.problem, determined={name: limit}, sizes=(span,))
+    return follow(replace(solver, problem=problem), orbit, way, MOST_FOLLOWED)[0]
+
+
+def _at_both(system: System, orbit: Orbit, held: list[SurfaceLike]) -> bool:
+    """Whether one of the joints held all along in an orbit reaches both its limits."""
+    return any(min(pull.up, -pull.down) > -TOGETHER for pull in _pulls(system, orbit, held))
 
 
 def _held(system: System, orbit: Orbit) -> list[SurfaceLike]:

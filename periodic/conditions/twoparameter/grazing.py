@@ -63,6 +63,8 @@ class _Grazing:
         dense = SwitchPolynomials(system, orbit)
         if self.held is None:
             both = [(side, e) for side in (-1, 1) for e in dense.minima(k, side)]
+            if not both:
+                raise FloatingPointError(f"{self.switch} has no extremum in this motion")
             side, extremum = min(both, key=lambda pair: abs(pair[1].value))
             self.held = Clearance(k, side, extremum.phase)
         row = self.held.linearise(system, orbit, free)

@@ -68,6 +68,8 @@ def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, chang
         if not found.ok:
             return None
         along = progress(solver, base, found.orbit)
+        if change.strict and -CONVERGED < along <= 0.0:  # at the base, but for Newton's error
+            along = abs(along) or CONVERGED * ds
         if not (0.0 if change.strict else CONVERGED * ds) < along <= FARTHEST_AHEAD * ds:
             return None
         if _comes_back(found, change, along <= CONVERGED * ds):
