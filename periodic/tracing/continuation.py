@@ -333,7 +333,7 @@ class Continuation:
         """
         assert self.state is not None
         follow = None if self.nested else self._follow
-        found = reread(self.solver, base, self.control.ds, follow, other)
+        found = reread(self.solver, base, self.control, follow, other)
         if found is None:
             return False
         bounds, value = (self.solver.problem.low, self.solver.problem.high), found.solution.value

@@ -28,6 +28,7 @@ from periodic.tracing.follow import Follow
 from periodic.tracing.heldplaces import off_limits
 from periodic.tracing.settling import settled
 from periodic.tracing.steps.patternchange import Crossed
+from periodic.tracing.steps.stepsize import ArclengthControl
 
 MOST_READINGS = 5
 """Largest number of times that the word of an orbit is read again."""
@@ -60,20 +61,21 @@ def worded(solver: Solver, guess: Orbit, sign: float) -> Solution:
 
 
 def reread(
-    solver: Solver, base: Solution, first: float, follow: Follow | None, other: bool = False
+    solver: Solver, base: Solution, control: ArclengthControl, follow: Follow | None, other: bool = False
 ) -> Crossed | None:
     """Return an orbit a little ahead on a branch, with the word of the motion there; None if there is none.
 
-    first: length of a first step. follow: follows branches in the places of joints, if these may be. other:
+    control: lengths of steps. follow: follows branches in the places of joints, if these may be. other:
     whether its word must differ from that of the base, as steps of the same word may come closer and closer
     to a change.
     """
     sign = float(np.sign(base.tangent.parameter))
     if solver.problem.free != (solver.problem.index,) or sign == 0:
         return None
-    if (moved := off_limits(solver, base, sign, worded, follow)) is not base:
+    if (moved := off_limits(solver, base, sign, worded, follow, control.ds_max)) is not base:
         return Crossed(moved, distance(solver.problem, base.orbit, moved.orbit) / size_of(base.orbit), False)
     search, near = _Search(solver, base, sign, other), _distances(solver.problem.system, base)
+    first = control.ds
     each = (search.found(first, partial(search.reworded, before=before), near) for before in BEFORE)
     found = next((crossed for crossed in each if crossed is not None), None)
     return found or search.found(first, search.settled, near[1:4])

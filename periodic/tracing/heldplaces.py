@@ -7,17 +7,19 @@ Where the bounds move along a branch one of them is reached first: the joint is 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from periodic.conditions.twoparameter.grazing import GrazingCondition
+from periodic.correction.identity import distance
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.events.modes import held_all_along
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import TOGETHER
+from periodic.linear.unknowns import size_of
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
@@ -84,12 +86,15 @@ def amid(solver: Solver, found: Solution, loose: list[SurfaceLike], sign: float)
     return found
 
 
-def off_limits(solver: Solver, found: Solution, sign: float, solve: Solve, follow: Follow | None) -> Solution:
+def off_limits(
+    solver: Solver, found: Solution, sign: float, solve: Solve, follow: Follow | None, farthest: float
+) -> Solution:
     """Return an orbit with the joints that just reach a limit moved away from it: midway, or less far.
 
     Where events change on the way, it is one at which a joint reaches both limits, from which slips in both
     directions begin. It is the orbit given where no joint is at one limit, or no such orbit is found. solve:
     finds orbits that may have other events. follow: follows branches, on which events may change, if it may.
+    farthest: how far off an orbit at both limits may be, in the metric of continuation.
     """
     problem, system = solver.problem, solver.problem.system
     each = at_limit(system, found.orbit)
@@ -97,12 +102,11 @@ def off_limits(solver: Solver, found: Solution, sign: float, solve: Solve, follo
     moved = amid(solver, found, loose, sign)
     if moved is not found or not loose or _at_both(system, found.orbit, loose):
         return moved
-    corner = _at_corner(solver, found, loose, sign, follow) if follow is not None else None
-    if corner is not None:
-        return corner
-    followed = _followed(solver, found, loose, sign, follow) if follow is not None else None
-    if followed is not None:
-        return followed
+    if follow is not None:
+        near = (led for led in _corners(solver, found, loose, sign, follow) if _apart(found, led) <= farthest)
+        led = next(near, None) or _followed(solver, found, loose, sign, follow)
+        if led is not None:
+            return led
     room, most = _room(system, found.orbit, loose), _room(system, found.orbit, loose, max)
     slopes = _slopes(solver, found, loose, _room, sign)
     if slopes is None:
@@ -159,10 +163,10 @@ def _along_place(
     return last
 
 
-def _at_corner(
+def _corners(
     solver: Solver, found: Solution, loose: list[SurfaceLike], sign: float, follow: Follow
-) -> Solution | None:
-    """The nearest orbit at which one of the joints reaches both limits, along those at which it reaches one.
+) -> Iterator[Solution]:
+    """Yield orbits at which one of the joints reaches both limits, along those at which it reaches one.
 
     The places in which a joint can be held lie between its limits: two curves over the parameter, that end
     where they meet. Midway between them is no way there where one of them turns back in the parameter.
@@ -171,8 +175,12 @@ def _at_corner(
         for way in (1, -1):
             orbit = _along_limit(solver, found.orbit, surface, int(way * sign), follow)
             if orbit is not None and _at_both(solver.problem.system, orbit, [surface]):
-                return _fixed(solver, orbit, sign)
-    return None
+                yield _fixed(solver, orbit, sign)
+
+
+def _apart(found: Solution, other: Solution) -> float:
+    """The distance of two orbits in the metric of continuation."""
+    return distance(found.problem, found.orbit, other.orbit) / size_of(found.orbit)
 
 
 def _along_limit(

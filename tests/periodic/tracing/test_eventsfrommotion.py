@@ -14,7 +14,9 @@ from periodic.bifurcations.label import Label
 from periodic.tracing import eventsfrommotion
 from periodic.tracing.eventsfrommotion import BEFORE, FARTHEST, MOST_READINGS, NEARER, _Search, reread, worded
 from periodic.tracing.steps.patternchange import Crossed
+from periodic.tracing.steps.stepsize import ArclengthControl
 
+STEPS = ArclengthControl(ds=0.125, ds_max=0.5)
 ORBIT = along(lambda tau: np.sin(tau)[:, None])
 
 
@@ -50,9 +52,13 @@ def search(monkeypatch: pytest.MonkeyPatch) -> list[tuple[Any, ...]]:
 
 def test_motions_are_read_soon_after_a_while_and_once_settled(search: list[tuple[Any, ...]]) -> None:
     """Assert the three readings with their distances, and nothing where none of them finds an orbit."""
-    assert reread(solver(), solution(rate=-2.0), 0.25, None, other=True) is None
+    assert reread(solver(), solution(rate=-2.0), STEPS, None, other=True) is None
     every = (5.0, 4.0, 3.0, 2.0, 1.0)
-    assert search == [(0.25, BEFORE[0], every), (0.25, BEFORE[1], every), (0.25, "settled", (4.0, 3.0, 2.0))]
+    assert search == [
+        (0.125, BEFORE[0], every),
+        (0.125, BEFORE[1], every),
+        (0.125, "settled", (4.0, 3.0, 2.0)),
+    ]
 
 
 @pytest.mark.parametrize(("free", "rate"), [((0, 1), 1.0), ((1,), 1.0), ((0,), 0.0)])
@@ -62,7 +68,7 @@ def test_motions_have_one_parameter(
     """Assert that nothing is read along curves in two parameters, nor where the parameter stands still."""
     given = solver()
     given.problem.free = free
-    assert reread(given, solution(rate=rate), 0.25, None, other=True) is None and not search
+    assert reread(given, solution(rate=rate), STEPS, None, other=True) is None and not search
 
 
 def test_first_motion_that_leads_on_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -76,7 +82,7 @@ def test_first_motion_that_leads_on_is_taken(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(_Search, "found", found)
     monkeypatch.setattr(eventsfrommotion, "off_limits", lambda solver, base, *_: base)
     monkeypatch.setattr(eventsfrommotion, "_distances", lambda *_: (1.0,))
-    assert reread(solver(), solution(), 0.1, None) == "found" and len(calls) == 2  # type: ignore[comparison-overlap]
+    assert reread(solver(), solution(), STEPS, None) == "found" and len(calls) == 2  # type: ignore[comparison-overlap]
 
 
 def test_orbit_moved_within_its_limits_is_taken_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -85,7 +91,7 @@ def test_orbit_moved_within_its_limits_is_taken_at_once(monkeypatch: pytest.Monk
     monkeypatch.setattr(eventsfrommotion, "off_limits", lambda *_: moved)
     monkeypatch.setattr(eventsfrommotion, "distance", lambda problem, base, other: 3.0)
     monkeypatch.setattr(eventsfrommotion, "size_of", lambda base: 4.0)
-    found = reread(solver(), solution(), 0.1, None)
+    found = reread(solver(), solution(), STEPS, None)
     assert found == Crossed(moved, 0.75, False)
 
 

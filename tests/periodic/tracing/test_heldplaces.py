@@ -70,8 +70,8 @@ def test_way_that_leads_to_no_corner(begun: Any) -> None:
     assert found is not None and not heldplaces._at_both(system, found, [surface])
     assert run.solver.problem.value(found) == BOUNDS[0]
     base = replace(run.state.last, correction=replace(run.state.last.correction, orbit=guess))
-    corner = heldplaces._at_corner(run.solver, base, [surface], -1.0, run._follow)
-    assert corner is not None and corner.ok and heldplaces._at_both(system, corner.orbit, [surface])
+    (corner,) = heldplaces._corners(run.solver, base, [surface], -1.0, run._follow)
+    assert corner.ok and heldplaces._at_both(system, corner.orbit, [surface])
     assert np.sign(corner.tangent.parameter) == -1.0
 
 
@@ -82,5 +82,20 @@ def test_nothing_is_sought_beyond_a_corner(begun: Any, monkeypatch: pytest.Monke
     monkeypatch.setattr(heldplaces, "at_limit", lambda *_: [surface])
     monkeypatch.setattr(heldplaces, "amid", lambda solver, found, *_: found)
     monkeypatch.setattr(heldplaces, "_at_both", lambda *_: True)
-    monkeypatch.setattr(heldplaces, "_at_corner", lambda *_: pytest.fail("it was sought"))
-    assert heldplaces.off_limits(run.solver, base, 1.0, heldplaces._fixed, run._follow) is base
+    monkeypatch.setattr(heldplaces, "_corners", lambda *_: pytest.fail("it was sought"))
+    assert heldplaces.off_limits(run.solver, base, 1.0, heldplaces._fixed, run._follow, 0.2) is base
+
+
+@pytest.mark.parametrize("far", [False, True])
+def test_far_corners_are_left(far: bool, begun: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that a corner as far off as the longest step is taken, and that else the place is followed."""
+    run, surface = begun
+    base, corner, followed = run.state.last, object(), object()
+    monkeypatch.setattr(heldplaces, "at_limit", lambda *_: [surface])
+    monkeypatch.setattr(heldplaces, "amid", lambda solver, found, *_: found)
+    monkeypatch.setattr(heldplaces, "_at_both", lambda *_: False)
+    monkeypatch.setattr(heldplaces, "_corners", lambda *_: iter([corner]))
+    monkeypatch.setattr(heldplaces, "_apart", lambda *_: 0.21 if far else 0.2)
+    monkeypatch.setattr(heldplaces, "_followed", lambda *_: followed)
+    found = heldplaces.off_limits(run.solver, base, 1.0, heldplaces._fixed, run._follow, 0.2)
+    assert found is (followed if far else corner)  # type: ignore[comparison-overlap]

@@ -279,7 +279,7 @@ def test_orbit_read_from_a_motion(
     """Assert that the branch goes on there, with special points at it, by a step as long as the way to it."""
     found = Crossed(solution(2.1, "read"), distance, False)
     monkeypatch.setattr(
-        continuation, "reread", lambda solver, base, first, follow, other: found if first == 0.1 else None
+        continuation, "reread", lambda solver, base, control, *_: found if control is CONTROL else None
     )
     monkeypatch.setattr(continuation, "at_once", lambda *_: [Label.FOLD])
     run.stop = Stop.after(Reason.INTERRUPTED, 2)
