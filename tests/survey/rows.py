@@ -41,7 +41,7 @@ class Limits:
 
 FEW = Limits(400, 4000, 40.0)
 
-MANY = Limits(6000, 100000, 900.0)
+MANY = Limits(20000, 400000, 3600.0)
 """Of models with several joints: a period has tens of events, and each two that change places are a point."""
 
 JUDGED = 8
