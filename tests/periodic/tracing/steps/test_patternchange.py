@@ -120,14 +120,21 @@ def test_change_within_a_step_is_where_it_ends(solving: dict[str, Any]) -> None:
         (0.5 * CONVERGED * 2.0, False, False),
         (2 * CONVERGED * 2.0, False, True),
         (0.5 * CONVERGED * 2.0, True, True),
-        (0.0, True, False),
+        (0.0, True, True),
+        (0.0, False, False),
+        (-0.5 * CONVERGED, True, True),
+        (-0.5 * CONVERGED, False, False),
+        (-CONVERGED, True, False),
         (-0.1, True, False),
     ],
 )
 def test_change_that_lies_in_the_step(
     along: float, strict: bool, ends: bool, solving: dict[str, Any]
 ) -> None:
-    """Assert that it lies ahead, one that grazes however near, and not much farther than the step."""
+    """Assert that it lies ahead, one that grazes however near, and not much farther than the step.
+
+    One that grazes may lie at the base, which Newton's method knows to CONVERGED only.
+    """
     solving["along"] = lambda orbit: along
     solver, base = stepping()
     assert (reached(solver, base, None, 2.0, change(strict=strict)) is not None) is ends
