@@ -123,7 +123,7 @@ def _onsets(
             continue
         part = _share(system, before, violation)
         at, surface = violation.at, surface_of(system, violation.switch)
-        slider = surface.kind == Kind.SLIDER
+        slider = surface.kind == Kind.SLIDER and not held_all_along(before.mesh, surface)
         if slider and violation.switch != jump and part * abs(violation.depth) <= AT_LEVEL:
             continue  # it stops at its limit there; the turn of its strain decides what follows
         if isinstance(at, Extremum) and at.switch != jump and strained_away(system, after, surface, at):
