@@ -125,8 +125,9 @@ class _Search:
     def _ahead(self, ds: float) -> Orbit:
         """The base, a step along its tangent; its phases stay where event nodes would cross."""
         problem, base = self.solver.problem, self.base
-        ahead = tangent(problem, base, ds)
-        ahead = ahead if in_order(ahead) else at_fixed_phases(problem, base, ds)
+        far = _as_far(base, ds)
+        ahead = tangent(problem, base, far)
+        ahead = ahead if in_order(ahead) else at_fixed_phases(problem, base, far)
         parameter = ahead.parameter.copy()
         parameter[problem.index] = float(np.clip(problem.value(ahead), *problem.bounds))
         return replace(ahead, parameter=parameter)
@@ -152,6 +153,16 @@ class _Search:
             return None
         onward = found.tangent.parameter * self.sign > 0
         return Crossed(found, apart, grazes=False) if onward else None
+
+
+def _as_far(base: Solution, ds: float) -> float:
+    """The step along a tangent that is a distance in states and parameter alone.
+
+    Lengths of excursions count relative to themselves: where one is all but gone it is all that changes.
+    """
+    problem, orbit = base.problem, base.orbit
+    way = replace(base.tangent, phases=np.zeros_like(base.tangent.phases))
+    return ds / float(np.sqrt(way.dot(way, orbit, problem.units(orbit), size_of(orbit))))
 
 
 def same_word(one: Orbit, other: Orbit) -> bool:

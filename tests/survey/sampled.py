@@ -17,7 +17,10 @@ PLACES = np.linspace(0.0, 1.0, 9)
 """In each interval."""
 
 FAR = 1e-6
-"""How far a switch may be past its level, as a part of its largest value: the orbits' tolerance."""
+"""How far a switch may be past its level, as a part of its largest value: the orbits' tolerance, ..."""
+
+ROUNDING = 16 * np.finfo(float).eps
+"""... beside rounding, as a part of the largest state: a slip that has just begun has a speed of 1e-11."""
 
 
 def outside(system: System, orbit: Orbit) -> tuple[float, str]:
@@ -26,7 +29,7 @@ def outside(system: System, orbit: Orbit) -> tuple[float, str]:
     states = np.einsum("tl,iln->itn", scheme.basis(PLACES), orbit.knots).reshape(-1, orbit.nodes.shape[1])
     tau = (orbit.grid.left[:, None] + orbit.grid.width[:, None] * PLACES).ravel()
     values = guards(system, states, tau, orbit.parameter, np.repeat(modes, len(PLACES), axis=0))
-    most, worst = 0.0, ""
+    most, worst, rounding = 0.0, "", ROUNDING * float(np.abs(states).max())
     for surface in surfaces_of(system):
         if surface.releases is None or surface.column is None:
             continue
@@ -37,7 +40,7 @@ def outside(system: System, orbit: Orbit) -> tuple[float, str]:
         past |= {up: np.where(held, values[:, up], 0.0), down: np.where(held, -values[:, down], 0.0)}
         limit = float(np.abs(values[:, [up, down]]).max())
         for k, far in past.items():
-            part = float(far.max()) / max(
+            part = (float(far.max()) - rounding) / max(
                 limit if k != surface.switch else np.abs(values[:, k]).max(), 1e-300
             )
             if part > most:

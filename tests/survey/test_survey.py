@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+from support.surfaces import Surfaces, along, joint
 
 import periodic as per
 from periodic.events import switchpolynomials
+from periodic.system import HELD
 from reports.studies.pages.engine import current
 from survey import rows as surveyed
 from survey.page import page
 from survey.rows import BACK, Limits, Row, drawn, models, read, row, write
-from survey.sampled import strays
+from survey.sampled import FAR, outside, strays
 
 
 def test_all_models_are_drawn_once() -> None:
@@ -69,7 +74,7 @@ def test_models_with_joints_count_from_both_ends() -> None:
 
 def test_page_tells_of_narrower_limits() -> None:
     """Assert how many models with several joints ended at limits of work below those of today."""
-    assert "allowed less" not in page([Row("joints", 1, "INTERRUPTED", "interrupted", seconds=880.0)])
+    assert "allowed less" not in page([Row("joints", 1, "INTERRUPTED", "interrupted", seconds=3520.0)])
     rows = [Row("joints", 1, "INTERRUPTED", "interrupted", seconds=300.0)]
     rows += [Row("joints", 2, "MAX_NEWTON", "iterations", newton=40000), Row("joints", 3, "BOUND", "end")]
     rows += [
@@ -127,3 +132,18 @@ def test_motions_that_stay_where_they_are(
     assert (found.wrong, found.unjudged) == ((), ())
     assert found.judged == count
     assert found.ratio < 1
+
+
+@pytest.mark.parametrize(("past", "seen"), [(2e-16, False), (2e-13, True)])
+def test_samples_allow_for_rounding(past: float, seen: bool) -> None:
+    """Assert that what is held with limits of 1e-11 beside a state of 1 is looked at but for rounding."""
+    system = Surfaces([joint()], [[0.0, 1.0], [0.0, -1.0], [0.0, 1.0]])
+    motion = partial(barely, past=past)
+    far, where = outside(system, along(motion, modes=[(0, HELD)]))
+    assert bool(far > FAR) is seen
+    assert where.startswith("s1 at 0.0000 rad") is seen
+
+
+def barely(tau: Any, past: float) -> Any:
+    """A large state, and a small one that is a little below 0 where tau is 0."""
+    return np.array([np.ones_like(tau), 1e-11 * np.sin(tau / 2) ** 2 - past]).T

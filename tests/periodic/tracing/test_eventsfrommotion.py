@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,8 +12,19 @@ import pytest
 from support.surfaces import along
 
 from periodic.bifurcations.label import Label
+from periodic.linear.unknowns import parameter_only, size_of
+from periodic.orbit.mesh import EventNode
 from periodic.tracing import eventsfrommotion
-from periodic.tracing.eventsfrommotion import BEFORE, FARTHEST, MOST_READINGS, NEARER, _Search, reread, worded
+from periodic.tracing.eventsfrommotion import (
+    BEFORE,
+    FARTHEST,
+    MOST_READINGS,
+    NEARER,
+    _as_far,
+    _Search,
+    reread,
+    worded,
+)
 from periodic.tracing.steps.patternchange import Crossed
 from periodic.tracing.steps.stepsize import ArclengthControl
 
@@ -158,8 +170,6 @@ def test_guess_ahead_within_the_bounds(
     ds: float, ordered: bool, value: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Assert the orbit along the tangent; its phases stay where they are where event nodes would cross."""
-    from dataclasses import replace
-
     base = SimpleNamespace(orbit=replace(ORBIT, parameter=np.array([0.5])))
 
     def ahead(problem: Any, base: Any, ds: float) -> Any:
@@ -171,10 +181,23 @@ def test_guess_ahead_within_the_bounds(
     monkeypatch.setattr(eventsfrommotion, "tangent", ahead)
     monkeypatch.setattr(eventsfrommotion, "at_fixed_phases", still)
     monkeypatch.setattr(eventsfrommotion, "in_order", lambda orbit: ordered)
+    monkeypatch.setattr(eventsfrommotion, "_as_far", lambda base, ds: ds)
     found = _Search(solver(), base, 1.0, False)._ahead(ds)  # type: ignore[arg-type]
     assert found.parameter.tolist() == [value]
     assert found.nodes == pytest.approx(base.orbit.nodes + (ds if ordered else -ds))
     assert base.orbit.parameter.tolist() == [0.5]
+
+
+@pytest.mark.parametrize("rates", [(0.0, 0.0), (3.0, -3.0), (-1e6, 2e6)])
+def test_lengths_of_excursions_are_no_distance(rates: tuple[float, float]) -> None:
+    """Assert the step at which parameter and states are so far off, whatever phases do meanwhile."""
+    orbit = along(lambda tau: np.sin(tau)[:, None], [(EventNode(0, 1), 1.0), (EventNode(0, -1), 1.0 + 1e-9)])
+    problem = SimpleNamespace(units=lambda orbit: 2.0)
+    way = replace(parameter_only(orbit, 0.5), phases=np.array(rates))
+    base: Any = SimpleNamespace(problem=problem, orbit=orbit, tangent=way)
+    assert _as_far(base, 0.01) == pytest.approx(0.04, rel=1e-12)
+    base.tangent = replace(way, profile=np.full_like(orbit.nodes, 0.75 * size_of(orbit)))
+    assert _as_far(base, 0.01) == pytest.approx(0.01 / np.hypot(0.25, 0.75), rel=1e-3)
 
 
 @pytest.mark.parametrize(
