@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.events.modes import group, held_all_along, mode_after, release, surface_of, torn
+from periodic.events.rewrites.heldback import after
 from periodic.events.rewrites.meetings import begun
 from periodic.events.rewrites.reversals import held, short_of
 from periodic.events.rewrites.sites import Added, Site, apart
@@ -196,10 +197,9 @@ def _jumps(system: System, surface: SurfaceLike, event: EventNode) -> bool:
 def _before_event(
     system: System, orbit: Orbit, surface: SurfaceLike, node: int, switch: int, side: int, value: float
 ) -> Site:
-    """The site of a slip that begins before an event of another surface, at which the force on it jumps back.
+    """The site of a slip that begins before an event of another surface, at which the force on it falls back.
 
-    The force grows evenly up to there, the speed as its square, and is stopped by what jumps. Joints that
-    stopped at the event because this one held stop with it then.
+    Joints that stopped at the event because this one held stop with it then.
     """
     event, phase, guard = orbit.mesh.events[node], float(orbit.phases[node]), surface.switch
     if torn(system, surface, event):
@@ -207,7 +207,8 @@ def _before_event(
     apart_now = parted(system, orbit, event, node, guard)
     rest = replace(event, modes=tuple(pair for pair in event.modes if pair not in apart_now))
     stop = EventNode(guard, side, modes=((guard, STUCK), *apart_now))
-    added = Added(EventNode(switch, -side), phase, -1.0), Added(stop, phase, 1.0, 2.0)
+    later = after(SwitchPolynomials(system, orbit), node, switch, side)
+    added = Added(EventNode(switch, -side), phase, -1.0), Added(stop, phase, *later)
     left = AT_LEVEL * _largest_release(system, orbit, surface)
     replaced = ((node, rest),) if apart_now else ()
     return Site(ADDING_ABOUT, switch, node, Limit(node, switch, side, left), value, added, (), replaced)
