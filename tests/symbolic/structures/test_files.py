@@ -45,8 +45,11 @@ def records(order: str, *counts: int) -> bytes:
 @pytest.mark.parametrize("order", ["<", ">"])
 @pytest.mark.parametrize("counts", [(24,), (48,), (24, 0), (24, 8, 300)])
 def test_chains_of_records(order: str, counts: Sequence[int]) -> None:
-    """Assert that whole ones are taken in either order of bytes, empty records too."""
-    nastran._check_records(records(order, *counts))
+    """Assert that whole ones are taken in either order of bytes, empty records too, and none that is cut."""
+    held = records(order, *counts)
+    nastran._check_records(held)
+    with pytest.raises(DamagedError):
+        nastran._check_records(held[:-1])
 
 
 @pytest.mark.parametrize(
