@@ -29,6 +29,7 @@ from periodic.tracing.heldplaces import off_limits
 from periodic.tracing.settling import settled
 from periodic.tracing.steps.patternchange import Crossed
 from periodic.tracing.steps.stepsize import ArclengthControl
+from periodic.tracing.steps.wayacross import way_and_tangent
 
 MOST_READINGS = 5
 """Largest number of times that the word of an orbit is read again."""
@@ -111,11 +112,18 @@ class _Search:
         """Whether an orbit found ahead is one of the branch: as far off as the step, or going on another way.
 
         One with other unstable multipliers may be that of another branch, to which the motion went from an
-        unstable orbit. Then a shorter step does not lead nearer.
+        unstable orbit. Then a shorter step does not lead nearer. Or a fold lies between: then the branch goes
+        back there as the parameter goes on.
         """
         if found.distance <= FARTHEST * ds:
-            return not at_once(self.base, found.solution) or self._nearer(found, ds, read)
+            alike = not at_once(self.base, found.solution)
+            return alike or (self._goes_on(found.solution) and self._nearer(found, ds, read))
         return read == self.settled and self._nearer(found, ds, read)
+
+    def _goes_on(self, found: Solution) -> bool:
+        """Whether the branch leads away from the base at an orbit found ahead."""
+        (way, tangent_there), orbit = way_and_tangent(self.base, found), self.base.orbit
+        return way.dot(tangent_there, orbit, self.solver.problem.units(orbit), size_of(orbit)) > 0
 
     def _nearer(self, found: Crossed, ds: float, read: Reading) -> bool:
         """Whether a shorter step leads to an orbit as much nearer."""

@@ -35,7 +35,12 @@ ORBIT = along(lambda tau: np.sin(tau)[:, None])
 def solver(**more: Any) -> Any:
     """A solver of a branch in its parameter 0 between -1 and 2, that changes no word."""
     problem = SimpleNamespace(
-        free=(0,), index=0, system="system", bounds=(-1.0, 2.0), value=lambda orbit: orbit.parameter[0]
+        free=(0,),
+        index=0,
+        system="system",
+        bounds=(-1.0, 2.0),
+        value=lambda orbit: orbit.parameter[0],
+        units=lambda orbit: 3.0,
     )
     method = SimpleNamespace(reworded=lambda *given: None, settles=lambda system: False)
     return SimpleNamespace(problem=problem, discretisation=method, **more)
@@ -108,12 +113,19 @@ def test_orbit_moved_within_its_limits_is_taken_at_once(monkeypatch: pytest.Monk
 
 
 def searching(
-    monkeypatch: pytest.MonkeyPatch, distances: dict[float, list[float]], leaps: bool = False
+    monkeypatch: pytest.MonkeyPatch,
+    distances: dict[float, list[float]],
+    leaps: bool = False,
+    away: float = 1.0,
 ) -> tuple[_Search, Any]:
     """A search that finds orbits at distances, known for each distance ahead; and how it reads motions.
 
-    leaps: whether they have other unstable multipliers than the base.
+    leaps: whether they have other unstable multipliers than the base. away: how far their tangents lead away
+    from it.
     """
+    way = SimpleNamespace(dot=lambda tangent, orbit, units, size: tangent * units * size)
+    monkeypatch.setattr(eventsfrommotion, "way_and_tangent", lambda base, found: (way, away))
+    monkeypatch.setattr(eventsfrommotion, "size_of", lambda orbit: 1.0)
     labels = [Label.BRANCH] if leaps else []
     monkeypatch.setattr(eventsfrommotion, "at_once", lambda base, found: labels)
     monkeypatch.setattr(_Search, "_ahead", lambda self, ds: ds)
@@ -154,6 +166,20 @@ def test_orbit_with_other_multipliers_comes_nearer_with_the_step(
 ) -> None:
     """Assert that one as near as the step is not taken where a quarter of it leads no nearer."""
     own, read = searching(monkeypatch, {1.0: [1.0], NEARER: [] if nearer is None else [nearer]}, leaps=True)
+    assert (own.found(1.0, read, (1.0,)) is not None) is taken
+
+
+@pytest.mark.parametrize(
+    ("leaps", "away", "taken"), [(True, 1.0, True), (True, -1.0, False), (False, -1.0, True)]
+)
+def test_orbit_beyond_a_fold_is_not_taken(
+    leaps: bool, away: float, taken: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert it of one with other multipliers from which the branch leads back to the base.
+
+    On joints 119 the branch went back over itself from there, to where it had begun.
+    """
+    own, read = searching(monkeypatch, {1.0: [1.0], NEARER: [NEARER]}, leaps, away)
     assert (own.found(1.0, read, (1.0,)) is not None) is taken
 
 
