@@ -192,8 +192,11 @@ class ModalFloquet:
         system = self._system
         flat = states.reshape(system.points, len(system.places), -1)
         asked = system.asked(flat[system.at])
+        begun = np.concatenate([modes.real, modes.imag])[self.kept]
+        if self.chain is not None:
+            return begun + self.driven(asked, np.zeros_like(begun))[1]
         answer = scipy.linalg.lu_solve(self._factors, asked, check_finite=False)
-        return np.concatenate([modes.real, modes.imag])[self.kept] + self._left @ answer
+        return np.asarray(begun + self._left @ answer)
 
     def once(self, basis: Array) -> Array:
         """Return M times the columns of a basis, (coordinates, r)."""

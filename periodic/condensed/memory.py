@@ -18,6 +18,9 @@ KEPT = 6
 SOLVING = 6
 """Matrices that exist at once while equations are set up and solved. Two more are kept with each orbit."""
 
+HALVED = 8
+"""States and forces of free motion on the halved mesh that exist at once while the error is estimated."""
+
 CACHE = 2.0**20
 """Bytes that are solved for at once: what a core's own cache holds, about. Any will do; more are slower."""
 
@@ -42,7 +45,7 @@ class Memory:
         Fraction of the intervals in which forces depend on the motion.
     kinked : bool
         Whether the error estimate solves equations on the halved mesh, as it does with event nodes or own
-        states. Otherwise those are never set up, and the orbit's own are set up as one matrix.
+        states. Otherwise those are never set up.
     even : bool
         Whether all intervals have one width.
     """
@@ -75,7 +78,7 @@ class Memory:
         size = self.points * (self.active * self.forces + self.own) * intervals
         finer = 2 if self.kinked else 1
         way = 4.0 * self._coordinates / (finer * intervals if self.even else 1)
-        if self.kinked and cheaper(finer * size, self._coordinates, finer * held, each, way):
+        if cheaper(finer * size, self._coordinates, finer * held, each, way):
             return 0.0
         return REAL * size**2 * (2 * KEPT + SOLVING * finer**2)
 
@@ -89,4 +92,5 @@ class Memory:
         rows = a * (self.forces + self.own) * (1.0 if self.own else self.active)
         tables += 2 * REAL * rows * c
         motion = REAL * c * followed
-        return KEPT * (tables + motion) + max(5 * motion, 2 * tables)
+        halved = 0.0 if self.kinked else REAL * HALVED * 2 * a * (self.forces + self.places) * followed
+        return KEPT * (tables + motion) + max(5 * motion, 2 * tables) + halved

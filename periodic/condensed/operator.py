@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -107,11 +106,17 @@ class CondensedOperator:
 
     def _by_interval(self, rows: Sequence[Row], right: Array) -> tuple[Array, Array]:
         """Forces and own states, and dy, with initial values of the motion and dy as the only unknowns."""
-        system, floquet = self.system, self._floquet
-        count = len(floquet.kept)
-        unknowns, ends = floquet.free
-        driven, left = floquet.driven(system.right, np.zeros((count, system.right.shape[1])))
-        inner, outer = system.restricted([folded(self.orbit, row) for row in (*self.own, *rows)])
+        whole = self.system.restricted([folded(self.orbit, row) for row in (*self.own, *rows)])
+        return self._begun(*whole, self.system.right, right)
+
+    def _begun(self, inner: Array, outer: Array, moved: Array, right: Array) -> tuple[Array, Array]:
+        """Forces and own states, and dy, of equations with right-hand sides `moved` (size, 1 + q).
+
+        Rows `inner` in forces and own states and `outer` in (1, dy) close them.
+        """
+        floquet = self._floquet
+        count, (unknowns, ends) = len(floquet.kept), floquet.free
+        driven, left = floquet.driven(moved, np.zeros((count, moved.shape[1])))
         outer = outer + inner @ driven
         closed = [-left[:, :1], np.eye(count) - ends, -left[:, 1:]]
         found = bordered.solve(np.block([closed, [outer[:, :1], inner @ unknowns, outer[:, 1:]]]), right)
@@ -142,18 +147,29 @@ class CondensedOperator:
         system, orbit, k = self.system, self.orbit, len(self.orbit.phases)
         flat = states.reshape(system.points, -1)
         missed = [folded(orbit, row)[0][:, system.places] for row in (*self.own, *rows)]
-        aim: list[Any] = [
-            [0.0],
-            system.asked(flat[system.at, :, None])[:, 0],
-            [-float(np.vdot(m, flat)) for m in missed],
-        ]
-        found = bordered.solve(self._bordered(rows), np.concatenate(aim)[:, None])[:, 0]
-        outer = found[system.size :]
-        stages = system.stages(found[: system.size, None], np.append(0.0, outer)[:, None])[..., 0]
+        asked = system.asked(flat[system.at, :, None])
+        beside = np.array([float(np.vdot(m, flat)) for m in missed])
+        solved = self._answered_at_once if self._floquet.chain is None else self._answered_by_interval
+        inner, outer = solved(rows, asked, beside)
+        stages = system.stages(inner, np.append(0.0, outer)[:, None])[..., 0]
         stages[:, system.places] += flat
         stages = stages.reshape(orbit.stages.shape)
         nodes = np.concatenate([stages[-1:, -1], stages[:, -1]])
         return Increment.of(orbit, nodes, stages, np.zeros_like(orbit.algebraic), outer[:k], outer[k:])
+
+    def _answered_at_once(self, rows: Sequence[Row], asked: Array, beside: Array) -> tuple[Array, Array]:
+        """Forces (size, 1) and dy due to forces (size, 1) and values of the rows."""
+        aim = np.concatenate([[0.0], asked[:, 0], -beside])
+        found = bordered.solve(self._bordered(rows), aim[:, None])
+        return found[: self.system.size], found[self.system.size :, 0]
+
+    def _answered_by_interval(self, rows: Sequence[Row], asked: Array, beside: Array) -> tuple[Array, Array]:
+        """The same, with initial values of the motion and dy as the only unknowns."""
+        inner, outer = self.system.restricted([folded(self.orbit, row) for row in (*self.own, *rows)])
+        moved = np.concatenate([asked, self.system.right[:, 1:]], axis=1)
+        outer[:, 0] = beside
+        found, moves = self._begun(inner, outer, moved, np.eye(1 + len(inner))[:, :1])
+        return found, moves[:, 0]
 
     def _recovered(self, constant: Array, states: Array, outer: Array) -> tuple[Increment, ...]:
         """The increments of states at the points, (P, n, r), and dy, (q, r)."""

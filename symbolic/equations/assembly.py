@@ -147,7 +147,7 @@ class Assembly(Workbench):
         Parameters
         ----------
         name : str
-            Its name.
+            Its name; where another switch has it, this one's is followed by the part's coordinates or name.
         expression : casadi.SX
             s.
         direction : int
@@ -161,7 +161,11 @@ class Assembly(Workbench):
             For a name that is no line of text.
         """
         text("name of a switch", name)
-        self.switches.append((SwitchInfo(name, direction, levels), expression))
+        taken = [info.name for info, _ in self.switches]
+        owned = f"{name} of {self.owner}"
+        numbered = (f"{owned} ({count})" for count in range(2, len(taken) + 3))
+        own = next(each for each in (name, owned, *numbered) if each not in taken)
+        self.switches.append((SwitchInfo(own, direction, levels), expression))
 
     def reset(self, name: str, expression: ca.SX, to: dict[State, ca.SX]) -> None:
         """Add a switch at whose fall through 0 states are given new values: an impact.

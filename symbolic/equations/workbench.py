@@ -10,7 +10,7 @@ q' = dq/dtau, so that dq/dt = omega q' and the equation of motion reads m omega^
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
@@ -55,6 +55,7 @@ class Workbench:
     differential_rows: list[ca.SX] = field(default_factory=list, init=False)
     algebraic_rows: list[ca.SX] = field(default_factory=list, init=False)
     outputs: list[tuple[Variable, ca.SX]] = field(default_factory=list, init=False)
+    shared: dict[int, str] = field(default_factory=dict, init=False)
 
     @contextmanager
     def owned(self, owner: str) -> Iterator[None]:
@@ -140,7 +141,12 @@ class Workbench:
     def described(self) -> list[tuple[Variable, ca.SX]]:
         """All outputs: the coordinates, then those that parts have added."""
         positions = [motion.position for motion in self.motions.values()]
-        return [(Variable(x.name, x.unit), x.symbol) for x in positions] + self.outputs
+        names = told_apart([variable.name for variable, _ in self.outputs], self.shared)
+        added = [
+            (Variable(name, variable.unit), expression)
+            for name, (variable, expression) in zip(names, self.outputs, strict=True)
+        ]
+        return [(Variable(x.name, x.unit), x.symbol) for x in positions] + added
 
     @property
     def variables(self) -> tuple[Variable, ...]:
@@ -383,7 +389,7 @@ class Workbench:
         rates = [known.get(id(state), state.derivative) for state in self.states]
         return self.excitation.along(expression, ca.vertcat(*symbols), ca.vertcat(*rates))
 
-    def output(self, name: str, unit: str, expression: ca.SX) -> None:
+    def output(self, name: str, unit: str, expression: ca.SX, shared: bool = False) -> None:
         """Add an output.
 
         Parameters
@@ -392,6 +398,9 @@ class Workbench:
             Its name, and its SI unit.
         expression : casadi.SX
             Any function of derivatives, states, unknowns, phase and parameters (SI).
+        shared : bool
+            Whether several parts of the model may have one of this name: where they do, each is called by its
+            part's coordinates or name as well, as "eccentricity of left".
 
         Raises
         ------
@@ -399,6 +408,33 @@ class Workbench:
             For a name that another output has, and one that is no line of text.
         """
         text("name of an output", name)
-        if any(name == variable.name for variable, _ in self.outputs):
+        own = [k for k, (variable, _) in enumerate(self.outputs) if variable.name == name]
+        if shared and all(k in self.shared for k in own):
+            self.shared[len(self.outputs)] = self.owner
+        elif own:
             raise ValueError(f"output {name!r} is defined twice; give contact pairs names of their own")
         self.outputs.append((Variable(name, unit), expression))
+
+
+def told_apart(names: Sequence[str], owners: Mapping[int, str]) -> list[str]:
+    """Return names, those that several items share with the owner of each, and a number where that is shared.
+
+    Parameters
+    ----------
+    names : sequence of str
+        What the items are called.
+    owners : mapping of int to str
+        The owner of each item that may share its name, by its index.
+
+    Returns
+    -------
+    list of str
+        A name for each.
+    """
+    full = [f"{name} of {owners[k]}" if names.count(name) > 1 else name for k, name in enumerate(names)]
+    return [_numbered(full, k) for k in range(len(full))]
+
+
+def _numbered(names: Sequence[str], k: int) -> str:
+    before = names[:k].count(names[k])
+    return f"{names[k]} ({before + 1})" if before else names[k]

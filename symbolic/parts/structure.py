@@ -28,7 +28,7 @@ from symbolic.structures.modalslope import ModalSlope, modal_slope
 WHOLE = 40
 """Most degrees of freedom of a structure that keeps all its states unasked, beside impacts."""
 
-Freedoms = int | Sequence[int]
+Freedoms = int | str | Sequence[int | str]
 Given = Any
 """A matrix, a function of the speed Omega (rad/s) that returns one, or None."""
 
@@ -50,8 +50,9 @@ class Structure(Part):
         M a `Matrices` may be given, and nothing else then.
     G : array_like, scipy.sparse or callable, optional
         Gyroscopic matrix; it is multiplied by Omega.
-    at : mapping of str to int or sequence of int
-        Places by the index of a degree of freedom, counted from 0; a sequence makes a tuple of coordinates.
+    at : mapping of str to int, str or sequence of them
+        Places by the index of a degree of freedom, counted from 0, or by the name of a place of `Matrices`,
+        as ``{"left": ("x0", "y0")}``; a sequence makes a tuple of coordinates.
     damping : float or sequence of float
         Damping ratio of all modes, or of the lowest ones, the last counting for all above. Structural
         damping eta, which has no meaning in time but in a harmonic motion, is that of a ratio eta/2 there.
@@ -105,7 +106,8 @@ class Structure(Part):
             raise refusal("M", given, "a matrix where C, K or G are given too; Matrices hold all of them")
         for name in ("M", "C", "K", "G"):
             object.__setattr__(self, name, getattr(given, name))
-        object.__setattr__(self, "at", {**given.at, **mapping("at", self.at)})
+        own = {place: _indices(given.at, where) for place, where in mapping("at", self.at).items()}
+        object.__setattr__(self, "at", {**given.at, **own})
 
     @property
     def size(self) -> int:
@@ -400,6 +402,13 @@ class Structure(Part):
 
 def _at(given: Given, speed: float) -> Given:
     return given(speed) if callable(given) else given
+
+
+def _indices(places: Mapping[str, int], where: Freedoms) -> Freedoms:
+    """Degrees of freedom by index, some of them given as names of places."""
+    if isinstance(where, Sequence) and not isinstance(where, str):
+        return tuple(places.get(k, k) if isinstance(k, str) else k for k in where)
+    return places.get(where, where) if isinstance(where, str) else where
 
 
 def _steepness(given: Given, speed: float, size: int) -> Array:

@@ -13,7 +13,7 @@ from symbolic.equations.variables import Coordinate, Value, several
 
 @dataclass(frozen=True)
 class TransmissionError(Part):
-    """Static transmission error -sum_j e_j cos j tau: force m sum_j e_j (j Omega)^2 cos j tau.
+    """Static transmission error e = sum_j e_j cos j tau: force -m e'' = m sum_j e_j (j Omega)^2 cos j tau.
 
     It is the inertia of the wheels (equivalent mass m) that follow the profile of the teeth, as the
     coordinate q is measured from it.

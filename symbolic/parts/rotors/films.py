@@ -119,4 +119,5 @@ def _film(assembly: Assembly, part: JournalBearing | SqueezeFilmDamper, turn: ca
     x.force += size * force[0]
     y.force += size * force[1]
     assembly.sketch.rotor(part.x, part.y, c)
-    assembly.output("eccentricity", "", ca.sqrt(places[0] ** 2 + places[1] ** 2 + 1e-30))
+    eccentricity = ca.sqrt(places[0] ** 2 + places[1] ** 2 + 1e-30)
+    assembly.output("eccentricity", "", eccentricity, shared=True)

@@ -65,5 +65,5 @@ class Rub(Part):
         x.force -= pressure * (a - mu * b)
         y.force -= pressure * (b + mu * a)
         assembly.sketch.rotor(self.x, self.y, g)
-        assembly.output("rub", "N", pressure * r)
+        assembly.output("rub", "N", pressure * r, shared=True)
         assembly.switch("r = clearance", (r - g) / g, 0)

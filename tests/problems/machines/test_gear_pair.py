@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -74,3 +75,46 @@ def test_rest_is_where_the_mesh_carries_the_load() -> None:
     """Assert where the search for a rest begins: in mesh, on the side of the load."""
     system = sym.scene("gear-pair")
     assert system.rest(system.nominal)[0] == pytest.approx([1.1, 0.0], abs=1e-15)
+
+
+def test_two_shafts_are_one_coordinate() -> None:
+    """Assert that wheels on shafts of one frequency k/m move against each other as one mass does.
+
+    With u = u1 - u2 - e: m (u'' + e'') + c u' + k(tau) B(u) + m s^2 (u + e) = F, m = m1 m2/(m1 + m2); the
+    error as that of the mesh, or as a part with the springs' share as a force. To 1e-9 in the deflection.
+    """
+    omega, m1, m2, stiff = sym.parameter("Omega", 0.9, "rad/s"), 2.0, 3.0, 0.02
+    m, error = m1 * m2 / (m1 + m2), (0.05, 0.02)
+    u1, u2, u = (sym.coordinate(name) for name in ("u1", "u2", "u"))
+    mesh = {"variation": (0.2, 0.1), "damping": 0.1}
+    wheels = [
+        part for q, own in ((u1, m1), (u2, m2)) for part in (sym.Mass(q, own), sym.Spring(q, stiff * own))
+    ]
+    teeth = sym.GearMesh(u1, 1.0, 1.0, to=u2, error=error, frequency=omega, **mesh)
+    two = sym.compile(sym.combine([*wheels, sym.ConstantForce(u1, 0.3 * m1), teeth]))
+    sprung = [sym.HarmonicForce(u, -m * stiff * e, omega, order=k) for k, e in enumerate(error, 1)]
+    alone = [sym.Mass(u, m), sym.Spring(u, stiff * m), sym.ConstantForce(u, 0.3 * m), *sprung]
+    alone += [sym.GearMesh(u, 1.0, 1.0, **mesh), sym.TransmissionError(u, m, error, omega)]
+    one = sym.compile(sym.combine(alone))
+    found = [per.trace(s, "Omega", (0.85, 0.9), start=0.9, tol=1e-9)[-1].orbit for s in (two, one)]
+    tau = np.linspace(0, 2 * np.pi, 50)
+    e = sum(a * np.cos(k * tau) for k, a in enumerate(error, 1))
+    deflections = found[0].state(tau)[:, 0] - found[0].state(tau)[:, 2] - e, found[1].state(tau)[:, 0]
+    assert deflections[0] == pytest.approx(deflections[1], abs=1e-9)
+    assert [s.name for s in two.switches] == ["u1 - u2 = backlash", "u1 - u2 = -backlash"]
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"damping": -1.0}, "damping of the mesh is -1"),
+        ({"error": 0.1}, "error is 0.1; it must be a sequence"),
+    ],
+)
+def test_bad_mesh(given: dict[str, Any], said: str) -> None:
+    """Assert one sentence for what damps or disturbs no mesh, and for two wheels that are one."""
+    u = sym.coordinate("u")
+    with pytest.raises((ValueError, TypeError), match=f"^{said}"):
+        sym.GearMesh(u, 1.0, 1.0, **given)
+    with pytest.raises(ValueError, match="^to is"):
+        sym.compile(sym.Mass(u, 1.0) + sym.GearMesh(u, 1.0, 1.0, to=u))

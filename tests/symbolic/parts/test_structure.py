@@ -197,3 +197,14 @@ def test_coordinates_of_degrees_of_freedom() -> None:
 def test_damping_that_is_given(options: dict[str, Any], expected: tuple[Any, ...]) -> None:
     """Assert ratios, and the factors of M and K."""
     assert structure(**options).modal_damping == ModalDamping(*expected)
+
+
+def test_places_by_the_names_of_matrices() -> None:
+    """Assert that a place is named after places that matrices have, one or several, beside indices."""
+    matrices = sym.Matrices(np.eye(3), None, np.eye(3), at={"x0": 0, "y0": 2})
+    given = sym.Structure(matrices, at={"end": ("x0", "y0"), "alone": "y0", "mixed": ("x0", 1)})
+    assert given.at == {"x0": 0, "y0": 2, "end": (0, 2), "alone": 2, "mixed": (0, 1)}
+    with pytest.raises(
+        ValueError, match="the index of place 'end' is .*z0.*; it must be a whole number from 0 to 2"
+    ):
+        sym.Structure(matrices, at={"end": ("x0", "z0")})
