@@ -31,7 +31,7 @@ SECTION ?=
 STALE ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help run test $(KINDS) apart kernels long dependencies survey fuzz mutants bench report-paper report-trade report-extremes report-machines report-structures stale docs lint types layers wheel clean
+.PHONY: help run test $(KINDS) apart kernels long dependencies survey survey-machines fuzz mutants bench report-paper report-trade report-extremes report-machines report-structures stale docs lint types layers wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
@@ -64,6 +64,12 @@ survey: $(VENV)/.installed-dev ## Trace and judge models with contact drawn at r
 	PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m survey build/survey-0.jsonl --share 0/2 & \
 	  PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m survey build/survey-1.jsonl --share 1/2; wait
 	PYTHONPATH=tests $(BIN)/python -m survey build/survey-*.jsonl --page tests/survey/README.md
+
+survey-machines: $(VENV)/.installed-dev ## Trace and judge machines drawn at random from catalogues (hours)
+	@mkdir -p build
+	PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m survey.machines build/machines-0.jsonl --share 0/2 & \
+	  PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m survey.machines build/machines-1.jsonl --share 1/2; wait
+	PYTHONPATH=tests $(BIN)/python -m survey.machines build/machines-*.jsonl --page tests/survey/machines/README.md
 
 fuzz: $(VENV)/.installed-dev ## Read spoilt files of every kind (COUNT of each, by default 10000)
 	PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m fuzz --count $(if $(filter file,$(origin COUNT)),10000,$(COUNT))

@@ -45,6 +45,9 @@ from periodic.system import System
 NODE_BEFORE_KINK = (1.0, 0.0, 10.0)
 """How far outside its excursion (rad, in tolerances) an event node lies on a new mesh, tried in turn."""
 
+NODES = 10
+"""Event nodes of an orbit beyond which it may have more intervals than `ntst_max`."""
+
 SHALLOWER = (10.0, 100.0)
 """Factors by which the least event level is raised, in turn, where a new mesh fails."""
 
@@ -58,7 +61,8 @@ class Collocation(MeshMethod):
     scheme : Scheme, optional
         Family and number of collocation points; default Radau IIA with as many as the tolerance asks for.
     ntst, ntst_min, ntst_max : int
-        Intervals to begin with, fewest and most.
+        Intervals to begin with, fewest and most: of an orbit of up to ten event nodes; one of more, whose
+        segments are graded each by itself, has as many more.
     kinks : KinkSettings, optional
         When a crossing of a level by a switch gets an event node; default what the tolerance asks for.
     solver : callable
@@ -231,7 +235,12 @@ class CollocationRefinement(Refinement):
     @property
     def exhausted(self) -> bool:
         """Whether the orbit has the largest number of intervals."""
-        return self.orbit.mesh.ntst >= self.method.ntst_max and not self._in_wrong_mode
+        return self.orbit.mesh.ntst >= self._largest and not self._in_wrong_mode
+
+    @property
+    def _largest(self) -> int:
+        """The largest number of intervals, in proportion to the event nodes where they are many."""
+        return int(self.method.ntst_max * max(1.0, len(self.orbit.phases) / NODES))
 
     @property
     def shortfall(self) -> str:
@@ -254,7 +263,7 @@ class CollocationRefinement(Refinement):
         method = self.method
         if self._in_wrong_mode or self._longer is not None:
             return self.orbit.mesh.ntst
-        limits = (method.ntst_min, method.ntst_max)
+        limits = (method.ntst_min, self._largest)
         return wanted_ntst(self.orbit, self.error, method.tolerance, *limits, begun)
 
     @property
@@ -262,7 +271,7 @@ class CollocationRefinement(Refinement):
         """Where the multipliers need more intervals."""
         if self._in_wrong_mode or self._longer is not None:
             return None
-        return demand(self.orbit, self.error, self.method.tolerance, self.method.ntst_max)
+        return demand(self.orbit, self.error, self.method.tolerance, self._largest)
 
     def refined(self) -> Mesh:
         """Return a mesh with intervals where the orbit needs them, and its present event nodes.

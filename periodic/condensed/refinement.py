@@ -44,6 +44,11 @@ class CondensedRefinement(CollocationRefinement):
         return super().exhausted or (self._limited and 2 * self.orbit.mesh.ntst > self._most)
 
     @property
+    def _largest(self) -> int:
+        """The largest number of intervals: that of the settings, as memory bounds it too."""
+        return self.method.ntst_max
+
+    @property
     def shortfall(self) -> str:
         """Why the error exceeds its bound."""
         more = f"; more would take over {LARGEST / 1e9:g} GB of memory" if self._limited else ""

@@ -14,7 +14,7 @@ from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 
-MOST_MESHES = 8
+MOST_MESHES = 12
 """How often the mesh is made anew for one orbit."""
 
 

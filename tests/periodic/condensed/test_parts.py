@@ -13,7 +13,7 @@ from support.surfaces import along
 from periodic.condensed import recursion, refinement, repeating, settling
 from periodic.condensed.circle import Circle
 from periodic.condensed.condensedcollocation import CondensedCollocation
-from periodic.condensed.memory import KEPT, SOLVING, Memory
+from periodic.condensed.memory import HALVED, KEPT, SOLVING, Memory
 from periodic.condensed.modal.moments import SERIES_UP_TO, Moments
 from periodic.condensed.operator import CondensedOperator
 from periodic.condensed.refinement import CondensedRefinement
@@ -206,11 +206,12 @@ def test_memory_by_hand() -> None:
     """Assert the bytes of 2 points, 1 place, 1 force and 1 mode, all active, with 10 even intervals.
 
     20 equations, as one matrix: 8 * 20^2 * (2 KEPT + SOLVING). Tables of an interval: 16 * 1 * 2 * 2 of
-    modes, 8 * 4 of places, 2 * 8 * 2 * 2 of rows; motion of the 2 coordinates 8 * 2 * 2.
+    modes, 8 * 4 of places, 2 * 8 * 2 * 2 of rows; motion of the 2 coordinates 8 * 2 * 2, and forces
+    and states of both at the 4 points of its halves, 8 * 4 * 2 * 2.
     """
     memory = Memory(2, 1, 1, 0, 1, 1.0, kinked=False, even=True)
     tables, motion = 64 + 32 + 64, 32
-    each = KEPT * (tables + motion) + max(5 * motion, 2 * tables)
+    each = KEPT * (tables + motion) + max(5 * motion, 2 * tables) + HALVED * 128
     assert memory.peak(10) == pytest.approx(8 * 400 * (2 * KEPT + SOLVING) + 10 * each)
     assert memory.most(100, memory.peak(10)) == 10
     assert memory.most(100, memory.peak(10) - 1) == 9

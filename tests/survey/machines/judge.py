@@ -1,0 +1,97 @@
+"""Points of a machine's branch against DOP853 and accelerations written out by hand.
+
+From a point's state the motion is followed through one period, with its perturbations by central differences;
+a Newton step from there says how far the state is from that of the true orbit. Nothing of `symbolic` or
+`periodic` is followed: only the point's numbers are read.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+from support.drawn.machines.machine import Machine
+
+import periodic as per
+
+Array = NDArray[np.float64]
+
+TIMES = 10.0
+"""An error is that many times what is claimed before it is wrong, as an estimate tells its order."""
+
+STEP = 1e-6
+"""Of the differences, in the scale of a state."""
+
+DIGITS = 1e-3
+"""What differences know multipliers to beside kinks; so near to the unit circle stability is not judged."""
+
+FAR = 1e5
+"""Growth of perturbations over a period beyond which the integration's own rounding decides."""
+
+BESIDE = 1e-4
+"""Least singular value of M - 1, over its largest, below which no orbit at a fixed speed is known: a fold."""
+
+RTOL = 1e-12
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Errors of a point: of its state, in peaks to peak; of its multipliers; whether its stability is so."""
+
+    orbit: float
+    multipliers: float
+    stability: bool
+
+    def wrong(self, point: per.Point, tol: float) -> str:
+        """Say what a point claims that is not so, or nothing."""
+        if not self.orbit <= TIMES * max(tol, point.error.orbit):
+            return f"orbit {self.orbit:.1e}, claimed {point.error.orbit:.1e}"
+        if not self.multipliers <= max(DIGITS, TIMES * point.error.multiplier):
+            return f"multipliers {self.multipliers:.1e}, claimed {point.error.multiplier:.1e}"
+        return "" if self.stability else f"stable is {point.stable}"
+
+
+def judged(machine: Machine, scales: Array, point: per.Point) -> Verdict:
+    """Judge a point. Raises ArithmeticError where rounding decides."""
+    begin = np.asarray(point.orbit.state(np.zeros(1))[0], dtype=float)
+    n = len(begin)
+    beside = np.concatenate([np.zeros((n, 1)), STEP * np.eye(n), -STEP * np.eye(n)], axis=1)
+    ends = _followed(machine, scales, point.parameter, begin[:, None] + beside)
+    end, monodromy = ends[:, 0], (ends[:, 1 : n + 1] - ends[:, n + 1 :]) / (2 * STEP)
+    growth = float(np.linalg.norm(monodromy, 2))
+    if not growth < FAR:
+        raise ArithmeticError(f"perturbations grow by {growth:.1e} in a period")
+    closing, gap = np.eye(n) - monodromy, end - begin
+    singular = np.linalg.svd(closing, compute_uv=False)
+    fold = singular[-1] < BESIDE * singular[0]
+    off = gap / max(growth, 1.0) if fold else np.linalg.solve(closing, gap)
+    size = max(float(np.ptp(point.orbit.nodes, axis=0).max()), 1e-6)
+    true, own = np.linalg.eigvals(monodromy), np.asarray(point.multipliers)
+    first, second = np.poly(true), np.poly(own)
+    apart = float(np.abs(first - second).max() / np.abs(first).max())
+    near = float(np.abs(np.abs(np.concatenate([true, own])) - 1).min()) < max(DIGITS, 10 * apart)
+    stable = bool(near or point.stable == bool((np.abs(true) < 1).all()))
+    return Verdict(float(np.abs(off).max()) / size, 0.0 if fold else apart, stable)
+
+
+def _followed(machine: Machine, scales: Array, speed: float, begin: Array) -> Array:
+    """States (n, r) after a period of the phase; coordinates and q' = dq/dtau by turns."""
+    assert machine.accelerations is not None
+    pace, given = machine.pace * speed, machine.accelerations
+
+    each = scales[:, None]
+
+    def rates(tau: float, flat: Array) -> Array:
+        z = flat.reshape(begin.shape)
+        found = np.empty_like(z)
+        found[::2] = z[1::2]
+        found[1::2] = given(tau, each * z[::2], pace * each * z[1::2], speed) / (each * pace**2)
+        return found.ravel()
+
+    tight = {"method": "DOP853", "rtol": RTOL, "atol": RTOL, "max_step": 2 * np.pi / 100}
+    found = solve_ivp(rates, (0.0, 2 * np.pi), begin.ravel(), **tight)
+    if not found.success:
+        raise ArithmeticError(found.message)
+    return np.asarray(found.y[:, -1].reshape(begin.shape))
