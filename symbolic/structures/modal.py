@@ -184,8 +184,8 @@ def _undamped(matrices: Matrices, count: int) -> tuple[Array, Array]:
             inverse, shapes = scipy.linalg.eigh(dense(matrices.M), dense(matrices.K))
         except np.linalg.LinAlgError:  # K is not positive definite
             return modes(matrices.K, matrices.M, count)
-        squares = 1 / inverse[::-1][:count]
-        return squares, shapes[:, ::-1][:, :count] * np.sqrt(squares)
+        if (lowest := inverse[::-1][:count]).min() > 0:  # else K is positive definite by rounding alone
+            return 1 / lowest, shapes[:, ::-1][:, :count] / np.sqrt(lowest)
     return modes(matrices.K, matrices.M, count)
 
 

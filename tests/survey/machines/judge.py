@@ -35,6 +35,12 @@ BESIDE = 1e-4
 
 RTOL = 1e-12
 
+STEPS = 1000
+"""Fewest steps of a period: a contact that is shorter may be passed unseen."""
+
+CLOSER = 16
+"""How many times more are taken before a point is said to be wrong."""
+
 
 @dataclass(frozen=True)
 class Verdict:
@@ -53,12 +59,17 @@ class Verdict:
         return "" if self.stability else f"stable is {point.stable}"
 
 
-def judged(machine: Machine, scales: Array, point: per.Point) -> Verdict:
-    """Judge a point. Raises ArithmeticError where rounding decides."""
+def judged(machine: Machine, scales: Array, point: per.Point, tol: float) -> Verdict:
+    """Judge a point, with more steps where it seems wrong. Raises ArithmeticError where rounding decides."""
+    found = _compared(machine, scales, point, STEPS)
+    return _compared(machine, scales, point, CLOSER * STEPS) if found.wrong(point, tol) else found
+
+
+def _compared(machine: Machine, scales: Array, point: per.Point, steps: int) -> Verdict:
     begin = np.asarray(point.orbit.state(np.zeros(1))[0], dtype=float)
     n = len(begin)
     beside = np.concatenate([np.zeros((n, 1)), STEP * np.eye(n), -STEP * np.eye(n)], axis=1)
-    ends = _followed(machine, scales, point.parameter, begin[:, None] + beside)
+    ends = _followed(machine, scales, point.parameter, begin[:, None] + beside, steps)
     end, monodromy = ends[:, 0], (ends[:, 1 : n + 1] - ends[:, n + 1 :]) / (2 * STEP)
     growth = float(np.linalg.norm(monodromy, 2))
     if not growth < FAR:
@@ -76,7 +87,7 @@ def judged(machine: Machine, scales: Array, point: per.Point) -> Verdict:
     return Verdict(float(np.abs(off).max()) / size, 0.0 if fold else apart, stable)
 
 
-def _followed(machine: Machine, scales: Array, speed: float, begin: Array) -> Array:
+def _followed(machine: Machine, scales: Array, speed: float, begin: Array, steps: int) -> Array:
     """States (n, r) after a period of the phase; coordinates and q' = dq/dtau by turns."""
     assert machine.accelerations is not None
     pace, given = machine.pace * speed, machine.accelerations
@@ -90,7 +101,7 @@ def _followed(machine: Machine, scales: Array, speed: float, begin: Array) -> Ar
         found[1::2] = given(tau, each * z[::2], pace * each * z[1::2], speed) / (each * pace**2)
         return found.ravel()
 
-    tight = {"method": "DOP853", "rtol": RTOL, "atol": RTOL, "max_step": 2 * np.pi / 100}
+    tight = {"method": "DOP853", "rtol": RTOL, "atol": RTOL, "max_step": 2 * np.pi / steps}
     found = solve_ivp(rates, (0.0, 2 * np.pi), begin.ravel(), **tight)
     if not found.success:
         raise ArithmeticError(found.message)

@@ -98,7 +98,7 @@ def _judged(
         point = points[int(k)]
         place = f"{drawn.parameter} {point.parameter!r} {point.label.value}".strip()
         try:
-            verdict = judged(drawn, scales, point)
+            verdict = judged(drawn, scales, point, TOL)
         except ArithmeticError as error:
             unjudged.append(f"{place}: {error}")
             continue

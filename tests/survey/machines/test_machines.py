@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from support.drawn.machines.drawn import FAMILIES, machine
 
+import periodic as per
 import symbolic as sym
-from survey.machines.judge import Verdict, judged
+from survey.machines.judge import Verdict, _compared, judged
 from survey.machines.page import page
 from survey.machines.rows import DOWN, SEEDS, models, row
 from survey.rows import Row, read, write
@@ -76,24 +77,20 @@ def test_machine_is_traced_and_judged(tmp_path: Path) -> None:
 
 def test_judge_sees_a_wrong_point() -> None:
     """Assert that a point is told for what it is: right, and wrong by 1e-4 of its motion."""
-    import periodic as per
-
     drawn = machine("gear pairs", 0)
     system = sym.compile(drawn.model)
     high, few = drawn.bounds[1], per.ArclengthControl(max_points=1)
     point = per.trace(system, drawn.parameter, drawn.bounds, start=high, control=few, tol=1e-8)[0]
     scales = np.array([system.states[0].scale])
-    assert judged(drawn, scales, point).wrong(point, 1e-8) == ""
+    assert judged(drawn, scales, point, 1e-8).wrong(point, 1e-8) == ""
     nodes = point.orbit.nodes.copy()
     nodes[:, 0] += 1e-4 * np.ptp(nodes, axis=0).max()
     spoilt = replace(point, orbit=replace(point.orbit, nodes=nodes))
-    assert judged(drawn, scales, spoilt).wrong(spoilt, 1e-8).startswith("orbit ")
+    assert judged(drawn, scales, spoilt, 1e-8).wrong(spoilt, 1e-8).startswith("orbit ")
 
 
 def test_verdicts() -> None:
     """Assert each sentence."""
-    import periodic as per
-
     drawn = machine("gear pairs", 0)
     few = per.ArclengthControl(max_points=1)
     point = per.trace(sym.compile(drawn.model), "Omega", drawn.bounds, start=drawn.bounds[1], control=few)[0]
@@ -116,3 +113,16 @@ def test_page_counts() -> None:
     assert "| gear pairs | 1 | 0 | 1 | 0 | 3 | 0.0 | 0 | 0 | 0 |" in told
     assert "| rubs down 0 | speed 1: orbit |" in told
     assert "| gear pairs 0 | interrupted: after 3 points (3 points, 0 s) |" in told
+
+
+def test_judge_looks_closer_before_it_condemns() -> None:
+    """Assert that teeth that part for 0.01 rad, which a thousand steps hold but a hundred pass, are seen."""
+    drawn = machine("gear pairs", 0)
+    system, at = sym.compile(drawn.model), 10733.611805236991
+    branch = per.trace(system, drawn.parameter, drawn.bounds, start=drawn.bounds[0], tol=1e-6, at=[at])
+    point = min(branch, key=lambda each: abs(each.parameter - at))
+    apart = np.diff(np.sort(point.orbit.phases))
+    assert min(apart[0], 2 * np.pi - apart[0]) == pytest.approx(0.01, abs=2e-3)
+    scales = np.array([system.states[0].scale])
+    assert judged(drawn, scales, point, 1e-6).multipliers < 1e-5
+    assert _compared(drawn, scales, point, 100).multipliers > 1e-3

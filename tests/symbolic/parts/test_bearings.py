@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import casadi as ca
@@ -98,3 +99,55 @@ def test_film_in_series(approach: float) -> None:
 def test_order_of_waves(surface: Any, spin: Any, order: Any) -> None:
     """Assert the order of the shaft's angle in which the height that an element meets repeats."""
     assert sym.RaceWave(surface, 5, 1e-6).order("31/10", spin) == order
+
+
+def test_rest_between_two_elements() -> None:
+    """Assert the rest under a load midway between two elements, in a clearance that is wide.
+
+    Each carries F = W/(2 cos(pi/8)) and is pressed by d = (F/K)^(2/3): the shaft is at (g + d)/cos(pi/8).
+    """
+    x, y = sym.coordinate("x", scale=1e-6), sym.coordinate("y", scale=1e-6)
+    turn, load, stiffness, gap = math.pi / 8, 100.0, 1e10, 3e-5
+    speed = sym.parameter("speed", 300.0, "rad/s")
+    races = {"clearance": gap, "speed": speed, "inner": 0.03, "outer": 0.05}
+    parts = [part for q in (x, y) for part in (sym.Mass(q, 5.0), sym.Damper(q, 100.0))]
+    parts += [sym.ConstantForce(x, load * math.cos(turn)), sym.ConstantForce(y, load * math.sin(turn))]
+    bearing = sym.RollingBearing(x, y, 8, sym.HertzLaw(stiffness), **races)  # type: ignore[arg-type]
+    found = sym.modes(sym.compile(sym.combine([*parts, bearing])), {"speed": 300.0}).state
+    at = (gap + (load / (2 * math.cos(turn) * stiffness)) ** (2 / 3)) / math.cos(turn)
+    assert 1e-6 * found[::2] == pytest.approx([at * math.cos(turn), at * math.sin(turn)], rel=1e-9)
+
+
+@pytest.mark.parametrize("phase", [0.0, math.pi])
+def test_rest_on_a_wave(phase: float) -> None:
+    """Assert the rest on a crest and in a trough of the outer race, both deeper than what is pressed."""
+    x, y = sym.coordinate("x", scale=1e-6), sym.coordinate("y", scale=1e-6)
+    load, stiffness, gap, height = 2.0, 1e10, 1e-6, 2e-6
+    speed = sym.parameter("speed", 300.0, "rad/s")
+    waves = [sym.RaceWave("outer", 8, height, phase)]
+    races = {"clearance": gap, "speed": speed, "inner": 0.03, "outer": 0.05, "waves": waves, "passages": 3}
+    parts = [part for q in (x, y) for part in (sym.Mass(q, 5.0), sym.Damper(q, 100.0), sym.Spring(q, 1.0))]
+    bearing = sym.RollingBearing(x, y, 8, sym.HertzLaw(stiffness), **races)  # type: ignore[arg-type]
+    system = sym.compile(sym.combine([*parts, sym.ConstantForce(x, load), bearing]))
+    found = sym.modes(system, {"speed": 300.0}).state
+    pressed = max(gap - height * math.cos(phase), 0.0)
+    if pressed:
+        assert 1e-6 * found[0] == pytest.approx(pressed + (load / stiffness) ** (2 / 3), rel=1e-4)
+    assert np.isfinite(found).all()
+
+
+def test_an_element_that_is_just_touched_is_not_stiff() -> None:
+    """Assert that rounding of a contact's depth makes no stiffness: a tenth of a full one, of rollers."""
+    x, y = sym.coordinate("x", scale=1e-6), sym.coordinate("y", scale=1e-6)
+    speed = sym.parameter("speed", 300.0, "rad/s")
+    races = {"clearance": 1e-6, "speed": speed, "inner": 0.03, "outer": 0.05}
+    law = sym.HertzLaw(5e8, 10 / 9)
+    parts = [part for q in (x, y) for part in (sym.Mass(q, 5.0), sym.ConstantForce(q, 1.0))]
+    system = sym.compile(sym.combine([*parts, sym.RollingBearing(x, y, 8, law, **races)]))  # type: ignore[arg-type]
+    forces = []
+    for depth in (0.0, 1e-13, 1e-9):  # in um
+        state = np.array([[1.0 + depth, 0.0, 0.0, 0.0]])
+        row = system.residual(0 * state, state, np.zeros((1, 0)), np.zeros(1), system.nominal)
+        forces.append(row[0])
+    assert (forces[0] == forces[1]).all()
+    assert not (forces[0] == forces[2]).all()

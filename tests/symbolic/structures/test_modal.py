@@ -182,3 +182,13 @@ def test_critically_damped_mode() -> None:
     form = modal_form("s", sym.Matrices(np.eye(1), 4 * np.eye(1), 4 * np.eye(1)), ModalDamping(), 1.0, None)
     assert form.exponents.real == pytest.approx([-2 + 6e-6, -2 - 6e-6], abs=1e-9)
     assert form.static([0]) == pytest.approx(np.array([[0.25]]), rel=1e-9)
+
+
+def test_stiffness_that_is_definite_by_rounding_alone() -> None:
+    """Assert that modes of a free beam, whose stiffness may pass for definite, are finite: (4.730041)^2."""
+    free = sym.beam(length=1.0, bending=1.0, mass_per_length=1.0, elements=7, left="free")
+    for digits in range(12, 17):  # some of these have least eigenvalues below 0 and yet a Cholesky factor
+        K = dense(free.K) + 10.0**-digits * np.abs(dense(free.K)).max() * np.eye(free.size)
+        squares, shapes = modal._undamped(sym.Matrices(free.M, None, K, at=free.at), free.size)
+        assert np.isfinite(squares).all() and np.isfinite(shapes).all()
+        assert squares[2] == pytest.approx(22.373285**2, rel=1e-3)
