@@ -240,7 +240,7 @@ class CollocationRefinement(Refinement):
     @property
     def _largest(self) -> int:
         """The largest number of intervals, in proportion to the event nodes where they are many."""
-        return int(self.method.ntst_max * max(1.0, len(self.orbit.phases) / NODES))
+        return self.method.ntst_max * max(NODES, len(self.orbit.phases)) // NODES
 
     @property
     def shortfall(self) -> str:

@@ -21,6 +21,9 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearPart, ModesLike, System, jumps_of, linear_of
 
+GREATEST = 0.5 * float(np.log(np.finfo(float).max))
+"""Exponent of growth in a period beyond which products of two such numbers overflow."""
+
 
 @dataclass(frozen=True)
 class Local:
@@ -109,12 +112,15 @@ def answer(
     """Return the response of the retained modes on an orbit's mesh, and the derivatives of these modes.
 
     Modes too weak to matter at the tolerance follow the forces quasi-statically, see `retained_modes`. Raises
-    ValueError for a system without a linear part.
+    ValueError for a system without a linear part, and FloatingPointError where modes grow beyond all numbers
+    in a period, as at a negative frequency that Newton's method has tried.
     """
     part, mesh = linear_of(system), orbit.mesh
     if part is None:
         raise ValueError("the system has no linear part; condensation needs one")
     whole = part.modes(parameter)
+    if not float(whole.exponents.real.max(initial=0.0)) * mesh.period < GREATEST:
+        raise FloatingPointError("modes of the linear part grow beyond all numbers in a period")
     displacements = [k for k, state in enumerate(part.states) if state not in part.velocities]
     # where forces jump, modes that follow them at once would make the motion jump
     kept = retained_modes(whole, displacements, mesh.period, 0.0 if jumps_of(system) else tolerance)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import periodic as per
 import symbolic as sym
+from periodic.collocation.collocation import CollocationRefinement
 from periodic.collocation.fastmotions.unresolved import FAST, growth, lost
 
 DAMPING = 1e-5
@@ -99,3 +102,15 @@ def test_rates_beyond_all_numbers() -> None:
     assert set(beyond) < set(names)
     values = [beyond.get(name, value) for name, value in zip(names, orbit.parameter, strict=True)]
     assert lost(system, replace(orbit, parameter=np.array(values))) == 0.0
+
+
+@pytest.mark.parametrize(("nodes", "most"), [(0, 100), (10, 100), (11, 110), (46, 460)])
+def test_intervals_in_proportion_to_event_nodes(nodes: int, most: int) -> None:
+    """Assert the largest number of intervals: that of the settings up to ten, in proportion beyond."""
+    for ntst, full in ((most - 1, False), (most, True)):
+        orbit = SimpleNamespace(phases=np.zeros(nodes), mesh=SimpleNamespace(ntst=ntst))
+        method = per.Collocation(ntst_max=100)
+        given: Any = SimpleNamespace(orbit=orbit, method=method, _in_wrong_mode=False)
+        given._largest = CollocationRefinement._largest.fget(given)  # type: ignore[attr-defined]
+        assert given._largest == most
+        assert CollocationRefinement.exhausted.fget(given) == full  # type: ignore[attr-defined]

@@ -157,3 +157,13 @@ def test_changes_of_series_at_the_beginning_are_those_of_pieces(monkeypatch: pyt
     angle = 2 * np.pi / pieces.mesh.period * pieces.stage_phases
     exact = Leading.start(leading, wave(angle, pieces.algebraic))
     assert own(leading, even) == pytest.approx(exact, rel=1e-9, abs=1e-12)
+
+
+def test_modes_that_grow_beyond_all_numbers() -> None:
+    """Assert that a negative frequency, at which damping drives, is a failure of the iteration."""
+    system, orbit = cantilever(10, cubic, damping=0.02), branch(10)[2].orbit
+    problem, method = chosen_method(CondensedCollocation().at(1e-6), per.Problem(system, "Omega", (3.0, 8.0)))
+    parameter = np.array(orbit.parameter)
+    parameter[problem.index] = -0.01
+    with pytest.raises(FloatingPointError, match="^modes of the linear part grow beyond all numbers"):
+        method.linearise(problem.system, replace(orbit, parameter=parameter), problem.free)
