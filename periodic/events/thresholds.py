@@ -25,6 +25,9 @@ AT_LEVEL = 100 * NOISE
 TOGETHER = 100 * AT_LEVEL
 """Largest |s| of an event that coincides with another one, by symmetry or as the other causes it."""
 
+ALIKE = 10 * Accuracy.STANDARD
+"""The same where the orbit's error parts them: tried last, as the word of the orbit beyond decides."""
+
 SAME_PHASE = AT_LEVEL
 """rad; about AT_LEVEL / s', the error of the phase at which s passes its level."""
 

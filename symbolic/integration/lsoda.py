@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
@@ -55,7 +56,8 @@ def followed(
     """Return the solution at the later phases, a row each, by LSODA or Radau. Raises IntegrationError."""
     if not np.isfinite(rates(phase[0], start)).all():
         raise failure(phase[0])
-    with interruptible() as raised:
+    with interruptible() as raised, warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "lsoda: ", UserWarning)  # it says the same by `success`
         found = scipy.integrate.solve_ivp(
             Counted(rates, EVALUATIONS * math.ceil((phase[-1] - phase[0]) / (2 * math.pi)), raised),
             (phase[0], phase[-1]),

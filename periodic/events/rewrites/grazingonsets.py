@@ -50,12 +50,12 @@ def begins(system: System, orbit: Orbit, violation: Violation) -> Site | None:
     return _limit(system, orbit, surface, violation)
 
 
-def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
+def at_once(system: System, orbit: Orbit, own: Site, within: float = TOGETHER) -> list[Site]:
     """Return a site as it is on the orbit where it begins, and those of its row that begin there too.
 
-    Empty where there is no such site on that orbit.
+    Those are within a distance of being reached. Empty where there is no such site on that orbit.
     """
-    near = [site for site in sites_of(system, orbit, own.row.name) if abs(site.value) <= TOGETHER]
+    near = [site for site in sites_of(system, orbit, own.row.name) if abs(site.value) <= within]
     if isinstance(own.at, Extremum) and own.row in (GRAZING, IMPACT):
         assert isinstance(own.held, Clearance)
         at = SwitchPolynomials(system, orbit).nearest(own.switch, own.held.side, own.held.phase)

@@ -25,7 +25,7 @@ from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMP
 from periodic.events.rewrites.together import together
 from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Speed
 from periodic.events.switchpolynomials import SwitchPolynomials
-from periodic.events.thresholds import AT_LEVEL, BESIDE_EXTREMUM, VANISHING
+from periodic.events.thresholds import ALIKE, AT_LEVEL, BESIDE_EXTREMUM, VANISHING
 from periodic.events.twinguards import held_throughout
 from periodic.events.violations import largest
 from periodic.orbit.mesh import MIN_INTERVALS, EventNode, Mesh
@@ -85,9 +85,9 @@ class Begins:
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
         """Yield ways on with a small excursion, and with those that begin at once elsewhere by symmetry."""
         sites = [] if self.last else at_once(system, orbit, self.site)
-        row = sites[0].row if sites else self.site.row
+        row, choices = sites[0].row if sites else self.site.row, self._choices(system, orbit, sites)
         for size in (*row.sizes, *row.spare) if sites else ():
-            for chosen in (sites, sites[:1])[: 2 if len(sites) > 1 else 1]:
+            for chosen in choices:
                 events, phases = rewritten(system, orbit, chosen, size)
                 node = chosen[0].begin(orbit, size)
                 if inconsistency(system, events) or not has(events, phases, node, orbit):
@@ -97,6 +97,12 @@ class Begins:
                 begin = index_of(events, phases, node, orbit)
                 held = self._held(system, orbit, begin, size)
                 yield Beyond(mesh, phases, held, grazes=False, spare=size in row.spare)
+
+    def _choices(self, system: System, orbit: Orbit, sites: list[Site]) -> list[list[Site]]:
+        """Sites that begin at once, the first alone, and with those that the orbit's error parts from it."""
+        alike = at_once(system, orbit, self.site, ALIKE) if self.site.row is GRAZING else []
+        choices = [sites, sites[:1], alike]
+        return [each for k, each in enumerate(choices) if k == 0 or len(each) not in map(len, choices[:k])]
 
     def _held(self, system: System, orbit: Orbit, begin: int, size: float) -> SideCondition:
         """The side condition that keeps the excursion at a size."""

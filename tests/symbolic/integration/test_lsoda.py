@@ -47,3 +47,10 @@ def test_signal_that_the_rates_drop() -> None:
     with pytest.raises(KeyboardInterrupt):
         lsoda.followed(rates, jacobian, np.ones(2), PHASE, 1e-8)
     assert len(calls) == 20
+
+
+def test_what_lsoda_says_beside_its_outcome() -> None:
+    """Assert that rates of a motion that ends, y' = y^2, are an IntegrationError and no warning of SciPy's."""
+    with pytest.raises(IntegrationError, match="CVODES and LSODA both failed at tau = ") as caught:
+        lsoda.followed(lambda tau, y: y**2, lambda tau, y: np.diag(2 * y), np.ones(1), PHASE, 1e-8)
+    assert caught.value.phase < 1.0

@@ -56,7 +56,7 @@ def journals(draw: Random) -> Machine:
 
 
 def dampers(draw: Random) -> Machine:
-    """On two squeeze-film dampers with cages, half of them centred."""
+    """On two squeeze-film dampers with cages, half of them sagging by up to 70 % of the clearance."""
     return _on_two(draw, dampers=True)
 
 
@@ -80,7 +80,7 @@ def _on_two(draw: Random, dampers: bool) -> Machine:
             cages[k] = own * (draw.uniform(1500, 5000) * RPM) ** 2
             parts += [sym.Spring(q, float(cages[k])) for q in (x, y)]
             viscosity, length, clearance = spread(draw, 0.003, 0.03), length / 2, 1.5 * clearance
-            loads[k] = own * GRAVITY if sag else 0.0
+            loads[k] = float(cages[k]) * clearance * draw.uniform(0, 0.7) if sag else 0.0  # of a cage
         else:
             loads[k] = own * GRAVITY
             number = spread(draw, 0.05, 5.0)
