@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import signal
+import warnings
 from contextlib import suppress
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -49,8 +51,16 @@ def test_signal_that_the_rates_drop() -> None:
     assert len(calls) == 20
 
 
-def test_what_lsoda_says_beside_its_outcome() -> None:
-    """Assert that rates of a motion that ends, y' = y^2, are an IntegrationError and no warning of SciPy's."""
-    with pytest.raises(IntegrationError, match="CVODES and LSODA both failed at tau = ") as caught:
-        lsoda.followed(lambda tau, y: y**2, lambda tau, y: np.diag(2 * y), np.ones(1), PHASE, 1e-8)
-    assert caught.value.phase < 1.0
+def test_what_lsoda_says_beside_its_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that where LSODA fails an IntegrationError tells how far it came, and SciPy warns of nothing."""
+
+    def failing(*given: object, **settings: object) -> SimpleNamespace:
+        warnings.warn(
+            "lsoda: Repeated convergence failures (perhaps bad Jacobian)", UserWarning, stacklevel=2
+        )
+        return SimpleNamespace(success=False, t=np.array([0.25, 0.5]), y=np.array([[1.0, np.nan]]))
+
+    monkeypatch.setattr(lsoda.scipy.integrate, "solve_ivp", failing)
+    with pytest.raises(IntegrationError, match="CVODES and LSODA both failed at tau = 0.25") as caught:
+        lsoda.followed(fast, jacobian, np.ones(2), PHASE, 1e-8)
+    assert caught.value.phase == 0.25
