@@ -121,6 +121,15 @@ def test_methods(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         assert other == pytest.approx(one, rel=1e-7)
 
 
+def test_accuracy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that the peak that the page asks for is the largest of the branch, between two of its points."""
+    said = run("howto/accuracy.md", tmp_path, monkeypatch)
+    branch, peak = said["branch"], said["peak"]
+    sizes = branch.peak_to_peak("x")
+    k = [p.parameter for p in branch].index(peak.parameter)
+    assert sizes.max() == sizes[k] == peak.peak_to_peak("x") > max(sizes[k - 1], sizes[k + 1])
+
+
 @pytest.mark.parametrize("name", ["howto/own-part.md", "howto/scenes.md"])
 def test_page_runs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that its blocks run, and that a branch there gets to its end."""

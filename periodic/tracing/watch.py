@@ -19,6 +19,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.results.point import Point
 from periodic.system import System, index_of
 from periodic.tracing.steps.leveltest import called, finite, level_test
+from periodic.tracing.steps.stationarytest import stationary_test
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +32,9 @@ class Watch:
         Functionals of the orbit kept at each point, by the names of their columns.
     events : mapping of str to Level
         Levels of functionals, by name; where one is passed the branch gets a point (UZ).
+    peaks : mapping of str to functional
+        Functionals, by name, as {"peak of x": PeakToPeak("x")}; where one is stationary along the branch, as
+        at a resonance, the branch gets a point (UZ), however long its steps are.
     limits : mapping of str to (float, float)
         Ranges of further parameters (SI) that end the branch.
     stop : mapping of str to int
@@ -51,6 +55,7 @@ class Watch:
 
     columns: Mapping[str, Functional] = field(default_factory=dict)
     events: Mapping[str, Level] = field(default_factory=dict)
+    peaks: Mapping[str, Functional] = field(default_factory=dict)
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     stop: Mapping[str, int] = field(default_factory=dict)
     special: tuple[TestFunction, ...] = ()
@@ -58,21 +63,27 @@ class Watch:
     journal: str | Path | None = None
 
     def __post_init__(self) -> None:
-        kinds = {"columns": "functionals", "events": "levels", "limits": "ranges", "stop": "counts"}
-        for name, what in kinds.items():
+        kinds = {"columns": "functionals", "events": "levels", "peaks": "functionals", "limits": "ranges"}
+        for name, what in {**kinds, "stop": "counts"}.items():
             named(name, getattr(self, name), what)
         known = [label.value for label in Label.known()]
-        for name, functional in self.columns.items():
+        for what, name, functional in (
+            *(("column", *each) for each in self.columns.items()),
+            *(("peak", *each) for each in self.peaks.items()),
+        ):
             if isinstance(functional, type) or not callable(functional):
-                raise ValueError(f"column {name} is {functional!r}; it must be a functional of an orbit")
+                raise ValueError(f"{what} {name} is {functional!r}; it must be a functional of an orbit")
+        for name in self.peaks:
+            if name in (*known, *self.events):
+                raise ValueError(f"peaks has {name!r}, which is a label or an event; it must be another name")
         for name, event in self.events.items():
             if not isinstance(event, Level):
                 raise ValueError(f"event {name} is {event!r}; it must be a Level(functional, value)")
             if name in known:
                 raise ValueError(f"events has {name!r}, which is a label; it must be another name")
         for name, count in self.stop.items():
-            if name not in (*known, *self.events):
-                among = ", ".join((*known, *self.events))
+            if name not in (*known, *self.events, *self.peaks):
+                among = ", ".join((*known, *self.events, *self.peaks))
                 raise ValueError(f"stop has {name!r}; it must name a label or an event: {among}")
             if isinstance(count, bool) or not (isinstance(count, int) and count >= 1):
                 raise ValueError(f"stop of {name} is {count!r}; it must be a whole number of at least 1")
@@ -94,7 +105,7 @@ class Watch:
             raise ValueError(f"journal is {self.journal!r}; it must be the name of a file")
 
     def tests(self) -> tuple[TestFunction, ...]:
-        """Return the test functions of further special points, of events and of limits.
+        """Return the test functions of further special points, of events, peaks and limits.
 
         Returns
         -------
@@ -109,7 +120,8 @@ class Watch:
             for name, ends in self.limits.items()
             for side, word, value in zip((-1, 1), ("lower", "upper"), ends, strict=True)
         ]
-        return (*map(_checked, self.special), *events, *limits)
+        peaks = [_checked(stationary_test(functional, n)) for n, functional in self.peaks.items()]
+        return (*map(_checked, self.special), *events, *peaks, *limits)
 
     def measured(self, system: System, orbit: Orbit) -> dict[str, float]:
         """Return the columns of an orbit.

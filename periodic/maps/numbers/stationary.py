@@ -2,30 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
-from periodic.bifurcations.label import Label
-from periodic.bifurcations.testfunction import TestFunction
 from periodic.conditions.functionals import Functional
 from periodic.conditions.levels import Peak
-from periodic.correction.predictor import tangent
 from periodic.correction.problem import Problem
-from periodic.correction.solution import Solution
 from periodic.maps.task import Task
 from periodic.results.branch import Branch
+from periodic.tracing.steps.stationarytest import stationary_test
 from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.trace import continuation
 from periodic.tracing.watch import Watch
 
 NAME = "stationary"
 """Name of the test function whose zero is the point."""
-
-ARCLENGTH_STEP = 1e-4
-"""Arclength of the difference that stands for a derivative along the branch."""
-
-PLACE_PRECISION = 1e-7
-"""Error of the place along the branch, in steps; that of the functional is about its square."""
 
 STEPS_AGAIN = 12
 """Largest number of steps in which the branch is followed again to its next points."""
@@ -78,7 +68,7 @@ def _between(branch: Branch, k: int, place: float) -> bool:
 def _along(task: Task, branch: Branch, k: int, functional: Functional) -> tuple[float, float] | None:
     """Follow the branch from the point before to the one behind, the derivative as a test function."""
     way = 1 if branch[k - 1].slope > 0 else -1
-    test = TestFunction(label=Label.USER, value=_slope(functional), precision=PLACE_PRECISION, name=NAME)
+    test = stationary_test(functional, NAME)
     control = replace(task.control or ArclengthControl(), max_points=STEPS_AGAIN)
     run = continuation(
         task.problem,
@@ -93,17 +83,3 @@ def _along(task: Task, branch: Branch, k: int, functional: Functional) -> tuple[
         if point.event == NAME:
             return float(functional(task.system, point.orbit)), point.parameter
     return None
-
-
-def _slope(functional: Functional) -> Callable[[Solution], float]:
-    """The derivative of a functional in arclength, by a central difference along the tangent."""
-
-    def value(solution: Solution) -> float:
-        problem = solution.problem
-        ends = [
-            functional(problem.system, tangent(problem, solution, h))
-            for h in (ARCLENGTH_STEP, -ARCLENGTH_STEP)
-        ]
-        return (ends[0] - ends[1]) / (2 * ARCLENGTH_STEP)
-
-    return value

@@ -50,7 +50,7 @@ def level_test(functional: Functional, level: float, label: Label, name: str) ->
             warnings.warn(message, RuntimeWarning, stacklevel=2)
             return False
 
-    rate = _rate_of(cast(Smooth, functional))
+    rate = rate_of(cast(Smooth, functional))
     return TestFunction(label=label, value=value, twice=twice, name=name)
 
 
@@ -64,7 +64,9 @@ def comes_back(ends: tuple[float, float], rates: tuple[float, float]) -> bool:
     return bool(cubic(inside).min(initial=np.inf) < PARABOLA_LEFT * min(a, b))
 
 
-def _rate_of(functional: Smooth) -> Callable[[Solution], float]:
+def rate_of(functional: Smooth) -> Callable[[Solution], float]:
+    """Return the derivative of a functional along the branch."""
+
     def rate(solution: Solution) -> float:
         """d functional / d arclength."""
         problem = solution.problem
