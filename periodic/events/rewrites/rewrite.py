@@ -85,8 +85,10 @@ class Begins:
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
         """Yield ways on with a small excursion, and with those that begin at once elsewhere by symmetry."""
         sites = [] if self.last else at_once(system, orbit, self.site)
-        row, choices = sites[0].row if sites else self.site.row, self._choices(system, orbit, sites)
-        for size in (*row.sizes, *row.spare) if sites else ():
+        if not sites:
+            return
+        row, choices = sites[0].row, self._choices(system, orbit, sites)
+        for size in (*row.sizes, *row.spare):
             for chosen in choices:
                 events, phases = rewritten(system, orbit, chosen, size)
                 node = chosen[0].begin(orbit, size)
@@ -100,9 +102,9 @@ class Begins:
 
     def _choices(self, system: System, orbit: Orbit, sites: list[Site]) -> list[list[Site]]:
         """Sites that begin at once, the first alone, and with those that the orbit's error parts from it."""
-        alike = at_once(system, orbit, self.site, ALIKE) if self.site.row is GRAZING else []
-        choices = [sites, sites[:1], alike]
-        return [each for k, each in enumerate(choices) if k == 0 or len(each) not in map(len, choices[:k])]
+        alike = at_once(system, orbit, self.site, ALIKE) if self.site.row is GRAZING else sites
+        by_size = {len(each): each for each in (alike, sites[:1], sites)}
+        return [by_size[count] for count in dict.fromkeys((len(sites), 1, len(alike)))]
 
     def _held(self, system: System, orbit: Orbit, begin: int, size: float) -> SideCondition:
         """The side condition that keeps the excursion at a size."""
