@@ -30,7 +30,7 @@ def test_contact_all_round_is_lost_on_two_sides_at_once(down: bool) -> None:
 
 
 def test_sites_that_begin_at_once_are_tried_in_turn(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Assert the order: those that coincide, the first alone, those that the orbit's error parts; none twice."""
+    """Assert the order: those that coincide, the first alone, those that an error parts; none twice."""
     own = SimpleNamespace(row=GRAZING)
     given: Any = SimpleNamespace(site=own)
     for row, coincide, alike, tried in (
