@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from symbolic.arrays import Array
 from symbolic.checks import numbers, typed, whole
@@ -100,7 +101,7 @@ def simulate(
     values: Mapping[str, float] | None = None,
     *,
     knock: Mapping[str, float] | None = None,
-    start: Simulation | None = None,
+    start: Simulation | Mapping[str, float] | None = None,
     settle: int = 100,
     periods: int = 1,
     samples: int = 400,
@@ -120,9 +121,10 @@ def simulate(
         Parameters (SI) that differ from their nominal values.
     knock : mapping of str to float, optional
         What is added to states (SI) at the beginning, by name; x' is the velocity dx/dt.
-    start : Simulation, optional
-        Motion from whose end the new one begins; by default the system begins at rest, one that jumps and
-        has none where the search for it begins.
+    start : Simulation or mapping of str to float, optional
+        Motion from whose end the new one begins; or states (SI) by name, x' the velocity, all others where
+        the search for a rest begins. By default the system begins at rest, one that jumps and has none where
+        the search for it begins.
     settle : int
         Excitation periods before those that are returned.
     periods : int
@@ -157,7 +159,7 @@ def simulate(
     state = state + _knocked(system, parameter, {} if knock is None else knock)
     ends, phase = np.array([0.0, PERIOD]), np.linspace(0, PERIOD * periods, samples * periods + 1)
     modes: Modes | None = None
-    earlier = None if start is None else _kept(system, start.modes)
+    earlier = _kept(system, start.modes) if isinstance(start, Simulation) else None
     done, largest = 0, DIVERGED * max(1.0, float(np.abs(state).max(initial=0.0)))
     try:
         for _ in counted(settle, "settling", "periods"):
@@ -205,9 +207,16 @@ def _check_bounded(system: CompiledSystem, state: Array, largest: float, phase: 
         )
 
 
-def _beginning(system: CompiledSystem, parameter: Array, start: Simulation | None) -> tuple[Array, Array]:
+def _beginning(
+    system: CompiledSystem, parameter: Array, start: Simulation | Mapping[str, float] | None
+) -> tuple[Array, Array]:
+    if isinstance(start, Mapping):
+        state, algebraic = system.rest(parameter)
+        chosen, values = _named(system, parameter, "start", start)
+        return np.where(chosen, values, state), algebraic
     if start is not None:
-        given = typed("start", start, Simulation, "a Simulation, as symbolic.simulate returns it")
+        allowed = "a Simulation, as symbolic.simulate returns it, or states by name"
+        given = typed("start", start, Simulation, allowed)
         return _in_scales(system, given), given.algebraic[-1]
     try:
         rest = RestFinder(system).modes(parameter)
@@ -229,12 +238,20 @@ def _in_scales(system: CompiledSystem, start: Simulation) -> Array:
 
 def _knocked(system: CompiledSystem, parameter: Array, knock: Mapping[str, float]) -> Array:
     """What a knock adds to the scaled states."""
-    names, added = [state.name for state in system.states], np.zeros(len(system.states))
-    for name, change in numbers("knock", knock, "knock").items():
+    return _named(system, parameter, "knock", knock)[1]
+
+
+def _named(
+    system: CompiledSystem, parameter: Array, what: str, given: Mapping[str, float]
+) -> tuple[NDArray[np.bool_], Array]:
+    """Which states are given, and their scaled values, 0 for the others. Raises ValueError."""
+    names = [state.name for state in system.states]
+    chosen, values = np.zeros(len(names), dtype=bool), np.zeros(len(names))
+    for name, value in numbers(what, given, what).items():
         if name not in names:
-            raise ValueError(f"knock has {name!r}; it must be one of {', '.join(names)}")
-        added[names.index(name)] = change
-    return added / _units(system, parameter)
+            raise ValueError(f"{what} has {name!r}; it must be one of {', '.join(names)}")
+        chosen[names.index(name)], values[names.index(name)] = True, value
+    return chosen, values / _units(system, parameter)
 
 
 def _units(system: CompiledSystem, parameter: Array) -> Array:

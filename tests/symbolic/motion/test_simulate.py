@@ -50,6 +50,32 @@ def test_knock_and_start() -> None:
     assert second["x"] == pytest.approx(whole["x"][20:], abs=1e-6)
 
 
+def test_start_by_name() -> None:
+    """Assert that states are taken in SI, x' as dx/dt, those that are not given as at the search for a rest."""
+    system = oscillator()
+    one = sym.simulate(system, {"F": 0.0, "Omega": 0.7}, start={"x": 0.3, "x'": -0.2}, settle=0, samples=10)
+    other = sym.simulate(system, {"F": 0.0, "Omega": 0.7}, knock={"x": 0.3, "x'": -0.2}, settle=0, samples=10)
+    assert (one["x"][0], one["x'"][0]) == pytest.approx((0.3, -0.2))
+    assert one["x"] == pytest.approx(other["x"], abs=1e-12)
+    x, y = sym.coordinate("x", start=0.25), sym.coordinate("y")
+    parts = [part for q in (x, y) for part in (sym.Mass(q, 1.0), sym.Spring(q, 1.0))]
+    both = sym.compile(sym.combine([*parts, sym.HarmonicForce(x, 0.5)]))
+    motion = sym.simulate(both, start={"y'": 1.0}, settle=0, samples=3)
+    assert [motion[name][0] for name in ("x", "x'", "y", "y'")] == pytest.approx([0.25, 0.0, 0.0, 1.0])
+
+
+def test_start_where_there_is_no_rest() -> None:
+    """Assert that a mass that nothing holds falls from where it is said to be: x = x0 + v t - t^2/2 here."""
+    x = sym.coordinate("x")
+    model = sym.Mass(x, 1.0) + sym.ConstantForce(x, -1.0) + sym.HarmonicForce(x, 0.0)
+    system = sym.compile(model)
+    with pytest.raises(sym.NoRestError):
+        sym.simulate(system, settle=0)
+    motion = sym.simulate(system, start={"x": 2.0, "x'": 3.0}, settle=0, samples=20)
+    t = motion.time
+    assert motion["x"] == pytest.approx(2 + 3 * t - t**2 / 2, abs=1e-6)
+
+
 def test_outputs_and_branch_of_a_disc() -> None:
     """Assert that a disc knocked hard settles to a motion of two periods, whose load balances the preload."""
     disc = sym.scene("vitrea79-810N")
@@ -83,7 +109,12 @@ def test_outputs_and_branch_of_a_disc() -> None:
         ),
         ({"knock": 3}, "knock is 3; it must be a mapping of names to numbers"),
         ({"knock": {"x": np.nan}}, "knock of x is nan; it must be a finite number"),
-        ({"start": 3}, "start is 3; it must be a Simulation, as symbolic.simulate returns it"),
+        (
+            {"start": 3},
+            "start is 3; it must be a Simulation, as symbolic.simulate returns it, or states by name",
+        ),
+        ({"start": {"y": 1.0}}, "start has 'y'; it must be one of x, x'"),
+        ({"start": {"x": np.inf}}, "start of x is inf; it must be a finite number"),
         ({"tolerance": "a"}, "tolerance is 'a'; it must be a finite number"),
         ({"tolerance": 1.0}, "tolerance is 1.0; it must lie between 1e-13 and 0.01"),
     ],
