@@ -51,7 +51,7 @@ def test_knock_and_start() -> None:
 
 
 def test_start_by_name() -> None:
-    """Assert that states are taken in SI, x' as dx/dt, those that are not given as at the search for a rest."""
+    """Assert that states are taken in SI, x' as dx/dt, others as where the search for a rest begins."""
     system = oscillator()
     one = sym.simulate(system, {"F": 0.0, "Omega": 0.7}, start={"x": 0.3, "x'": -0.2}, settle=0, samples=10)
     other = sym.simulate(system, {"F": 0.0, "Omega": 0.7}, knock={"x": 0.3, "x'": -0.2}, settle=0, samples=10)
