@@ -98,12 +98,12 @@ class Branch(Record):
         return tuple(p for p in self.points if p.label is not Label.NONE)
 
     def labelled(self, label: str) -> tuple[Point, ...]:
-        """Return the points with a label, or of one of the user's events by its name.
+        """Return the points with a label, or of one of the user's events or peaks by its name.
 
         Parameters
         ----------
         label : Label or str
-            `Label.FOLD` or "LP", or the name of an event.
+            `Label.FOLD` or "LP", or the name of an event or a peak.
 
         Returns
         -------
@@ -115,7 +115,8 @@ class Branch(Record):
         ValueError
             For a text that is neither; it says which there are.
         """
-        events = dict.fromkeys((*self.made.get("events", {}), *(p.event for p in self.points if p.event)))
+        asked = [name for group in ("events", "peaks") for name in self.made.get(group, {})]
+        events = dict.fromkeys((*asked, *(p.event for p in self.points if p.event)))
         known = [*(known.value for known in Label.known()), *events]
         if label and label not in known:
             raise ValueError(f"label is {str(label)!r}; it must be one of {', '.join(known)}")

@@ -195,7 +195,7 @@ def _check_names(said: Mapping[str, Any], layout: Layout, events: np.ndarray) ->
         raise ValueError("labels, versions or made are not by name")
     if said["parameter"] not in [q.name for q in layout.parameters]:
         raise DamagedError("it is over a parameter that it has not")
-    made = [name for group in ("events", "columns") for name in said["made"].get(group, ())]
+    made = [name for group in ("events", "peaks", "columns") for name in said["made"].get(group, ())]
     versions = [text for pair in said["versions"].items() for text in pair]
     for name in (*made, *versions, *said["columns"], *map(str, events)):
         if not isinstance(name, str) or not name.isprintable():

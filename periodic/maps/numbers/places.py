@@ -52,8 +52,8 @@ class Places:
 
     def units(self, task: Task) -> dict[str, str]:
         """Return the unit of the values. Raises ValueError for a label that branches do not have."""
-        events = task.watch.events if task.watch is not None else {}
-        one_of("label", self.label, [*map(str, Label.known()), *events])
+        own = () if task.watch is None else (*task.watch.events, *task.watch.peaks)
+        one_of("label", self.label, [*map(str, Label.known()), *own])
         given = self.functional
         return {"": parameter_unit(task) if given is None else unit_of(task.system, given)}
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -106,3 +108,30 @@ def test_rotor_in_a_film_whose_resonance_lies_between_points() -> None:
     (peak,) = branch.labelled("peak of x")
     assert peak.parameter / rpm == pytest.approx(4462.71, abs=0.01)
     assert 1e9 * peak.peak_to_peak("x") == pytest.approx(32.0166, abs=1e-3)
+
+
+def test_peak_that_is_not_met(tmp_path: Path) -> None:
+    """Assert that a branch has no points of its name, also from a file, and asks for it when resumed."""
+    watch = per.Watch(peaks={"resonance": per.PeakToPeak("x")})
+    system, few = oscillator(0.1), per.ArclengthControl(max_points=2)
+    branch = per.trace(system, "Omega", (1.2, 1.5), control=few, watch=watch)
+    branch.save(tmp_path / "branch.nc")
+    read = per.Branch.load(tmp_path / "branch.nc")
+    assert branch.labelled("resonance") == read.labelled("resonance") == ()
+    with pytest.raises(ValueError, match="^label is 'other'; it must be one of .*, resonance$"):
+        read.labelled("other")
+    with pytest.raises(per.ResumeError, match="peaks"):
+        per.trace(system, "Omega", (1.2, 1.5), guess=read)
+    whole = per.trace(system, "Omega", (1.2, 1.5), guess=read, watch=watch)
+    assert whole.stop.reason is per.Reason.BOUND
+
+
+def test_branch_of_a_file_that_is_older_than_peaks() -> None:
+    """Assert that it is taken up, where none are asked for, and not where some are."""
+    system, few = oscillator(0.1), per.ArclengthControl(max_points=2)
+    branch = per.trace(system, "Omega", (1.2, 1.5), control=few)
+    older = replace(branch, made={name: value for name, value in branch.made.items() if name != "peaks"})
+    assert per.trace(system, "Omega", (1.2, 1.5), guess=older).stop.reason is per.Reason.BOUND
+    with pytest.raises(per.ResumeError, match="peaks"):
+        watch = per.Watch(peaks={"resonance": per.PeakToPeak("x")})
+        per.trace(system, "Omega", (1.2, 1.5), guess=older, watch=watch)
