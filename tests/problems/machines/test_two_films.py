@@ -1,4 +1,4 @@
-"""A shaft with a disc in two film bearings, one of them so lightly loaded that it hardly moves."""
+"""A shaft with a disc in two film bearings, one of which carries a seventh of the disc."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SLOW = 120.0
 
 
 def rotor() -> sym.CompiledSystem:
-    """A shaft of seven elements, 85 kg with its disc, which hangs over one of the bearings."""
+    """A shaft of seven elements, 18 kg, with a disc of 40 kg beside one of the bearings."""
     disc = sym.ShaftDisc(node=6, mass=40.0, polar=0.4, diametral=0.2)
     shaft = sym.shaft(length=0.8, diameter=0.06, elements=7, discs=[disc])
     places = {"left": ("x0", "y0"), "disc": ("x6", "y6"), "right": ("x7", "y7")}

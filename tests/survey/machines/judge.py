@@ -84,14 +84,13 @@ def _compared(machine: Machine, scales: Array, point: per.Point, steps: int) -> 
     apart = float(np.abs(first - second).max() / np.abs(first).max())
     near = float(np.abs(np.abs(np.concatenate([true, own])) - 1).min()) < max(DIGITS, 10 * apart)
     stable = bool(near or point.stable == bool((np.abs(true) < 1).all()))
-    return Verdict(float(np.abs(off).max()) / size, 0.0 if fold else apart, stable)
+    return Verdict(float(np.abs(off).max()) / size, apart, stable)
 
 
 def _followed(machine: Machine, scales: Array, speed: float, begin: Array, steps: int) -> Array:
     """States (n, r) after a period of the phase; coordinates and q' = dq/dtau by turns."""
     assert machine.accelerations is not None
     pace, given = machine.pace * speed, machine.accelerations
-
     each = scales[:, None]
 
     def rates(tau: float, flat: Array) -> Array:
