@@ -28,12 +28,16 @@ beyond which another special point is not the fold itself."""
 
 @dataclass(frozen=True)
 class Found:
-    """A special point at `distance` from the step's base; `name` is the user's name of an event or limit."""
+    """A special point at `distance` from the step's base; `name` is the user's name of an event or limit.
+
+    within: how far from there it may lie in the parameter, besides the orbit's error.
+    """
 
     label: Label
     distance: float
     solution: Solution
     name: str = ""
+    within: float = 0.0
 
     @property
     def shrunk(self) -> bool:

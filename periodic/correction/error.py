@@ -95,6 +95,26 @@ class ErrorEstimate:
         """
         return SAFETY * self.parameter * max(abs(value), LEAST_VALUE * scale)
 
+    def widened(self, within: float, value: float, scale: float) -> ErrorEstimate:
+        """Return the estimate of a point that lies somewhere about a value of the parameter.
+
+        Parameters
+        ----------
+        within : float
+            How far from it at most (SI).
+        value : float
+            The value (SI).
+        scale : float
+            Length of the range that it is in.
+
+        Returns
+        -------
+        ErrorEstimate
+            With that as the error of the parameter, where it is more.
+        """
+        relative = within / max(abs(value), LEAST_VALUE * scale)
+        return replace(self, parameter=max(self.parameter, relative))
+
     @property
     def worst(self) -> float:
         """The error that is compared with the tolerance, that of the multipliers included."""

@@ -17,6 +17,7 @@ class Reason(Enum):
     EQUILIBRIUM = "equilibrium reached"
     HOMOCLINIC = "homoclinic orbit reached"
     VANISHED = "orbits without size reached"
+    UNBOUNDED = "orbits grow without bound"
     MAX_POINTS = "largest number of points reached"
     MAX_NEWTON = "largest number of Newton iterations reached"
     SMALL_STEP = "step size below its minimum"
@@ -48,6 +49,7 @@ COUNTED = {
     Reason.EQUILIBRIUM: "the orbits shrank to it after {} points",
     Reason.HOMOCLINIC: "the period grows without bound, {:.4g} s here",
     Reason.VANISHED: "the motion has shrunk to rounding, {:.2g} peak to peak (scaled)",
+    Reason.UNBOUNDED: "the parameter stands still, {:.2g} peak to peak (scaled) here",
     Reason.INTERRUPTED: "after {} points",
     Reason.MAX_POINTS: "{} points",
 }

@@ -274,7 +274,7 @@ class Continuation:
         if special.shrunk:
             self.stop = Stop.after(Reason.EQUILIBRIUM, state.steps + 1)
         self._counted(name)
-        yield self._emitted(special.solution, label, special.name if own else "")
+        yield self._emitted(special.solution, label, special.name if own else "", special.within)
 
     def _counted(self, name: str) -> None:
         """Count a label or event, and set `stop` where the branch shall end at it."""
@@ -282,10 +282,12 @@ class Continuation:
         if self.stop is None and self._count[name] == self.watch.stop.get(name):
             self.stop = Stop.asked(name, self._count[name])
 
-    def _emitted(self, solution: Solution, label: Label, event: str = "") -> Point:
+    def _emitted(self, solution: Solution, label: Label, event: str = "", within: float = 0.0) -> Point:
         problem = self.solver.problem
         columns = self.watch.measured(problem.full, problem.expand(solution.orbit))
         point = describe(solution, label, event, columns)
+        error = point.error.widened(within, solution.value, problem.scale)
+        point = replace(point, error=error)
         self.collected.append(point)
         return point
 
@@ -297,12 +299,12 @@ class Continuation:
         """
         assert self.state is not None
         found = crossed(self.solver, at)
-        labels = [] if found is None else at_once(at.end, found.solution)
+        labels = () if found is None else found.labels
         if labels and found is not None and not (found.grazes or at.change.grazes or at.change.final):
             found = None  # nearer to the change it shows whether they lie at it, or before or after it
         if found is not None:
             at_grazing = found.solution if found.grazes else at.end
-            named = [Found(label, 0.0, at_grazing) for label in labels]
+            named = [Found(label, 0.0, at_grazing, within=found.within) for label in labels]
             for special in [] if found.grazes else named:
                 yield from self._met(special)
             self._emitted(found.solution, Label.GRAZING if found.grazes else Label.NONE)

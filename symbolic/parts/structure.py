@@ -154,7 +154,9 @@ class Structure(Part):
         key = float(speed) if any(callable(g) for g in given) else 0.0
         if key not in self._known:
             self._known.clear()
-            self._known[key] = Matrices(*(_at(g, key) for g in given))
+            named = {place: where for place, where in self.at.items() if isinstance(where, int)}
+            mass, damping, stiffness, gyroscopic = (_at(g, key) for g in given)
+            self._known[key] = Matrices(mass, damping, stiffness, gyroscopic, at=named)
         return self._known[key]
 
     def __getitem__(self, place: str) -> Any:

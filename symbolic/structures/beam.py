@@ -7,12 +7,15 @@ from typing import Literal
 import numpy as np
 
 from symbolic.arrays import Array
-from symbolic.checks import one_of, positive, whole
+from symbolic.checks import one_of, positive, refusal, whole
 from symbolic.structures.matrices import DENSE, Matrices, Matrix, sparse
 
 ENDS = ("free", "pinned", "clamped")
 
 End = Literal["free", "pinned", "clamped"]
+
+MOST_ELEMENTS = 5000
+"""Of a cantilever of so many, rounding of each entry of K by itself leaves omega^2 uncertain by 0.7 %."""
 
 
 def beam(
@@ -38,8 +41,8 @@ def beam(
     mass_per_length : float
         rho A in kg/m.
     elements : int
-        Number of elements. Rounding of the stiffness matrix, of condition n^4, changes the first frequency by
-        6e-5 with 1000 of them and leaves nothing of it with 10 000.
+        Number of elements, at most 5000: rounding of the stiffness matrix, of condition n^4, changes the
+        first frequency by 6e-6 with 1000 of them and 5e-4 with 5000, and leaves nothing of it with 20 000.
     left, right : {"free", "pinned", "clamped"}
         Its ends: pinned without deflection, clamped without slope either.
 
@@ -58,7 +61,11 @@ def beam(
     ----------
     .. [1] M. Petyt, Introduction to Finite Element Vibration Analysis, 2nd ed., sec. 3.5.
     """
-    element = positive("length", length) / whole("elements", elements, 1)
+    if whole("elements", elements, 1) > MOST_ELEMENTS:
+        raise refusal(
+            "elements", elements, f"at most {MOST_ELEMENTS}: rounding of K hides the first mode of more"
+        )
+    element = positive("length", length) / elements
     stiffness, mass = bending_element(element, positive("bending", bending))
     mass = mass * positive("mass_per_length", mass_per_length)
     nodes = elements + 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,6 +12,9 @@ from symbolic.arrays import Array
 from symbolic.checks import positive, refusal, sequence, whole
 from symbolic.structures.flexibility import damping_at
 from symbolic.structures.matrices import DENSE, Matrices, dense
+
+RIGID = 1e-7
+"""Part of the largest eigenvalue up to which rounding makes frequencies of double zeros (as eps^(1/2))."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +26,8 @@ class Campbell:
     speeds : ndarray, shape (N,)
         Omega in rad/s.
     frequencies : ndarray, shape (N, k)
-        Damped natural frequencies Im(lambda) in rad/s, ascending; NaN where fewer than k oscillate.
+        Damped natural frequencies Im(lambda) in rad/s, ascending; NaN where fewer than k oscillate. What
+        decays to rounding within a period does not, as pairs that gyroscopic moments make of overdamped ones.
     damping : ndarray, shape (N, k)
         Damping ratios ``-Re(lambda)/|lambda|``; negative where the rotor is unstable.
     """
@@ -92,10 +97,12 @@ def campbell(matrices: Matrices, speeds: Sequence[float], count: int = 6) -> Cam
 
 
 def _oscillating(matrices: Matrices, speed: float, count: int) -> Array:
-    """The lowest eigenvalues with positive imaginary part, rad/s."""
+    """The lowest eigenvalues of motions of which something is left after a period, rad/s."""
     mass, n = dense(matrices.M), matrices.size
     lower = np.linalg.solve(mass, np.hstack([-dense(matrices.K), -dense(damping_at(matrices, speed))]))
     values = np.linalg.eigvals(np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), lower]))
-    found = values[values.imag > 1e-7 * np.abs(values).max()]
+    rigid = values.imag <= RIGID * np.abs(values).max()
+    decays = 2 * np.pi * np.abs(values.real) >= -math.log(np.finfo(float).eps) * values.imag
+    found = values[~rigid & ~decays]
     found = found[np.argsort(found.imag)][:count]
     return np.r_[found, np.full(count - len(found), np.nan + 1j * np.nan)]

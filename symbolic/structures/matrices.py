@@ -14,6 +14,7 @@ from scipy.sparse.linalg import ArpackNoConvergence, eigsh, splu
 
 from symbolic.arrays import Array
 from symbolic.checks import mapping, refusal, text, whole
+from symbolic.structures.rounding import hidden
 
 sparse: Any = scipy.sparse
 """Untyped: its stubs tell kinds apart that are one here."""
@@ -26,6 +27,12 @@ DENSE = 500
 
 RELATIVE_STEP = float(np.finfo(float).eps) ** (1 / 3)
 """Of central differences of matrices, over the argument: there h^2 is the rounding eps / h."""
+
+REGULAR = 1e3 * float(np.finfo(float).eps)
+"""Part of M, in units of K / M, that makes a singular K regular beyond rounding."""
+
+BELOW = 0.1
+"""Distance of the shift below the lowest elastic mode, as a part of its omega^2."""
 
 SYMMETRY = 1e-8
 """Largest difference of an entry of M or K from its mirror image, relative to the largest entry."""
@@ -84,8 +91,8 @@ class Matrices:
     @property
     def first_frequency(self) -> float:
         """Lowest undamped natural frequency that is not zero, in Hz: a model in wrong units says so by it."""
-        squares = lowest(self.K, self.M, min(self.size, 12))
-        elastic = squares[squares > 1e-9 * np.abs(squares).max()]
+        squares, shapes = modes(self.K, self.M, min(self.size, 12))
+        elastic = squares[(squares > 1e-9 * np.abs(squares).max()) & ~hidden(self.K, squares, shapes)]
         return math.sqrt(elastic[0]) / (2 * math.pi) if len(elastic) else 0.0
 
     def __getitem__(self, place: str) -> int:
@@ -174,13 +181,45 @@ def modes(stiffness: Matrix, mass: Matrix, count: int) -> tuple[Array, Array]:
     if n <= DENSE or count > n // 2:
         squares, shapes = scipy.linalg.eigh(dense(symmetric), dense(mass), subset_by_index=(0, count - 1))
         return squares, shapes
-    # A shift below zero: K alone is singular where there are rigid-body modes.
-    typical = abs(symmetric).sum() / abs(mass).sum()
-    pencil = [sparse.csc_array(m) for m in (symmetric, mass)]
+    pencil = sparse.csc_array(symmetric), sparse.csc_array(mass)
     try:
-        squares, shapes = eigsh(pencil[0], count, pencil[1], sigma=-1e-8 * typical, which="LM")
+        return _by_lanczos(*pencil, count)
     except ArpackNoConvergence as error:
         raise ArithmeticError(f"the {count} lowest modes were not found: {error}") from None
+
+
+def _by_lanczos(stiffness: Matrix, mass: Matrix, count: int) -> tuple[Array, Array]:
+    """The lowest modes by shift-invert about 0; a little below where K is singular, by rigid-body modes.
+
+    The nearer the shift is to the modes, the less of them is lost: first from one at which K is regular for
+    certain, then from one just below the lowest elastic mode that this has found.
+    """
+    if _is_regular(stiffness):
+        squares, shapes = _about(stiffness, mass, count, 0.0)
+        if not hidden(stiffness, squares, shapes).any():
+            return squares, shapes
+    squares, shapes = _about(stiffness, mass, count, -REGULAR * float(abs(stiffness).sum() / abs(mass).sum()))
+    elastic = squares[~hidden(stiffness, squares, shapes) & (squares > 0)]
+    return _about(stiffness, mass, count, -BELOW * float(elastic[0])) if len(elastic) else (squares, shapes)
+
+
+def _is_regular(stiffness: Matrix) -> bool:
+    """Whether K can be factorised at all."""
+    try:
+        splu(stiffness)
+    except RuntimeError:
+        return False
+    return True
+
+
+def _about(stiffness: Matrix, mass: Matrix, count: int, shift: float) -> tuple[Array, Array]:
+    """The modes next to a shift, ascending; from one start, so that they are the same each time.
+
+    Rayleigh's quotient has the errors of the shapes, by rounding of the factors, by their squares alone.
+    """
+    start = np.random.default_rng(0).normal(size=mass.shape[0])
+    _, shapes = eigsh(stiffness, count, mass, sigma=shift, which="LM", v0=start)
+    squares = np.einsum("nj,nj->j", shapes, stiffness @ shapes)
     order = np.argsort(squares)
     return squares[order], shapes[:, order]
 

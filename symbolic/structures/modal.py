@@ -18,12 +18,16 @@ from scipy.sparse.linalg import splu
 from symbolic.arrays import Array, Complex
 from symbolic.structures.damping import ModalDamping
 from symbolic.structures.matrices import DENSE, Matrices, dense, modes, sparse
+from symbolic.structures.rounding import hidden
 
 MODES = 200
 """How many modes of a structure of more than DENSE degrees of freedom are kept by default."""
 
 RIGID = 1e-14
 """Ratio of omega^2 to the largest below which a mode is a rigid-body mode."""
+
+MOVED = 0.1
+"""Part of the largest displacement from which on a degree of freedom is named among those that are loose."""
 
 CRITICAL_DISTANCE = 3e-6
 """Relative distance to which the two exponents of a critically damped mode are moved apart. It changes the
@@ -131,9 +135,10 @@ def modal_form(
             rates = rates + damping.rates(np.sqrt(np.maximum(squares, 0.0)))
             return _uncoupled(name, matrices, squares, rates, shapes)
     if n > DENSE or wanted < n:
+        what = f"be reduced to {DENSE} at the most" if n > DENSE else f"keep all its modes, not {wanted}"
         raise ValueError(
             f"structure {name!r} has {n} degrees of freedom and damping or gyroscopic terms that couple its "
-            f"modes; it must be reduced to {DENSE} at the most"
+            f"modes; it must {what}"
         )
     if not damping.none:
         own = dense(own) + damping.matrix(matrices)
@@ -145,7 +150,7 @@ def stiffened(matrices: Matrices, held: Mapping[int, float]) -> Matrices:
     added = np.zeros(matrices.size)
     added[list(held)] = list(held.values())
     more = sparse.diags_array(added) if sparse.issparse(matrices.K) else np.diag(added)
-    return Matrices(matrices.M, matrices.C, matrices.K + more, matrices.G)
+    return Matrices(matrices.M, matrices.C, matrices.K + more, matrices.G, at=matrices.at)
 
 
 def holding(matrices: Matrices, speed: float, freedoms: Sequence[int], others: Array) -> dict[int, float]:
@@ -191,13 +196,16 @@ def _undamped(matrices: Matrices, count: int) -> tuple[Array, Array]:
 
 def _uncoupled(name: str, matrices: Matrices, squares: Array, rates: Array, shapes: Array) -> ModalForm:
     """From real modes phi with q'' + rate q' + omega^2 q = phi' f."""
-    rigid = np.abs(squares) <= RIGID * max(np.abs(squares).max(), 1e-300)
-    if rigid.any() or (squares < 0).any():
-        kind = "rigid-body modes" if rigid.any() else "modes of negative stiffness"
-        raise LooseError(
-            f"structure {name!r} has {int((rigid | (squares < 0)).sum())} {kind} that forces at its places "
-            f"do not hold; add a stiffness to K, or compile it with condense=False"
-        )
+    rigid = np.abs(squares) <= RIGID * np.abs(squares).max()
+    unsure = hidden(matrices.K, squares, shapes)
+    loose = rigid | unsure | (squares < 0)
+    if loose.any():
+        kind = "modes of negative stiffness"
+        if unsure.any() and not rigid.any():
+            kind = "modes that rounding of K, of a free structure or too fine a mesh, leaves no stiffness"
+        elif rigid.any():
+            kind = "rigid-body modes"
+        raise _loose(name, f"{int(loose.sum())} {kind}", matrices, shapes[:, loose])
     root = np.sqrt((rates / 2) ** 2 - squares + 0j)
     root = np.where(
         np.abs(root) < CRITICAL_DISTANCE * np.sqrt(squares), CRITICAL_DISTANCE * np.sqrt(squares), root
@@ -218,10 +226,9 @@ def _coupled(name: str, matrices: Matrices, damping: Array) -> ModalForm:
     n = matrices.size
     mass = scipy.linalg.cho_factor(dense(matrices.M))
     if not _condition(dense(matrices.K)) < 1 / RIGID:
-        raise LooseError(
-            f"structure {name!r} has rigid-body modes that forces at its places do not hold; add a "
-            f"stiffness to K, or compile it with condense=False"
-        )
+        _, stretched, motions = np.linalg.svd(dense(matrices.K))
+        free = stretched <= max(RIGID * float(stretched[0]), float(stretched[-1]))
+        raise _loose(name, "rigid-body modes", matrices, motions[free].T)
     state = np.zeros((2 * n, 2 * n))
     state[:n, n:] = np.eye(n)
     state[n:, :n] = -scipy.linalg.cho_solve(mass, dense(matrices.K))
@@ -239,6 +246,20 @@ def _coupled(name: str, matrices: Matrices, damping: Array) -> ModalForm:
     kept = values.imag >= 0
     twice = np.where(values[kept].imag > 0, 2.0, 1.0)
     return ModalForm(values[kept] + 0j, shapes[:, kept] * twice + 0j, drive[kept] + 0j, matrices)
+
+
+def _loose(name: str, kind: str, matrices: Matrices, shapes: Array) -> LooseError:
+    """The error that names what is loose by the degrees of freedom that it moves most."""
+    names = {k: place for place, k in matrices.at.items()}
+    largest = np.abs(shapes).max(axis=1)
+    most = np.flatnonzero(largest > MOVED * largest.max())
+    moved = [names.get(int(k), str(k)) for k in most]
+    shown = moved if len(moved) <= 6 else [*moved[:6], f"{len(moved) - 6} more"]
+    return LooseError(
+        f"structure {name!r} has {kind} that forces at its places do not hold, of degrees of freedom "
+        f"{', '.join(shown)}; add a "
+        f"stiffness there to K, take these out of its matrices, or compile it with condense=False"
+    )
 
 
 def _condition(matrix: Array | Complex) -> float:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from periodic.bifurcations.label import Label
+from periodic.bifurcations.turningpoint import at_once
 from periodic.correction.change import Beyond, Change, Held
 from periodic.correction.condition import SideCondition
 from periodic.correction.identity import distance
@@ -125,32 +128,46 @@ def progress(solver: Solver, base: Solution, orbit: Orbit) -> float:
 
 @dataclass(frozen=True)
 class Crossed:
-    """The orbit beyond a change of pattern, its distance from the one before, and whether it grazes."""
+    """The orbit beyond a change of pattern, its distance from the one before, and whether it grazes.
+
+    labels: the special points between the two, which cannot be told from the change; they lie `within` so
+    much of the parameter from it.
+    """
 
     solution: Solution
     distance: float
     grazes: bool
+    labels: Sequence[Label] = ()
+    within: float = 0.0
 
 
 def crossed(solver: Solver, at: Reached) -> Crossed | None:
     """Return an orbit beyond a change of pattern, the first whose branch goes on the same way.
 
+    Beside a special point that a small excursion brings with it, the excursion is made smaller: behind an
+    elastic stop multipliers change fast from the grazing on, but do not jump, and the point lies beyond.
     Where all of them turn back in the parameter there is a fold in between, and where one lies behind the
     change there are two: then none is returned as long as the branch can be followed nearer to the change,
     and in the end the nearest.
     """
     nearest: Crossed | None = None
+    onward: Crossed | None = None
     for way in at.change.beyond(solver.problem.system, at.end.orbit):
-        if way.spare and nearest is not None and not _folded_twice(at.end, nearest.solution):
+        folded = nearest is not None and not _folded_twice(at.end, nearest.solution)
+        if way.spare and (folded or onward is not None):
             break
         found = _along(solver, at, way)
         if found is None:
             continue
-        if _onward(at.end, found.solution):
-            return found
-        if nearest is None or found.distance < nearest.distance:
-            nearest = found
-    return nearest if at.change.final else None
+        if not _onward(at.end, found.solution):
+            nearest = min(nearest or found, found, key=lambda each: each.distance)
+        elif onward is None or len(found.labels) < len(onward.labels):
+            onward = found
+        else:
+            onward = replace(onward, within=min(found.within, onward.within))
+        if onward is not None and not (onward.labels and at.change.grazes):
+            break
+    return onward or (nearest if at.change.final else None)
 
 
 def _folded_twice(before: Solution, after: Solution) -> bool:
@@ -181,7 +198,7 @@ def _along(solver: Solver, at: Reached, way: Beyond) -> Crossed | None:
             apart <= (max(FARTHEST_BEYOND, ACROSS * at.ds) if swaps else FARTHEST_BEYOND)
             and problem.low <= new.value <= problem.high
         ):
-            return Crossed(new, apart, way.grazes)
+            return Crossed(new, apart, way.grazes, at_once(at.end, new), abs(new.value - at.end.value))
     return None
 
 

@@ -55,6 +55,10 @@ def test_kinds_of_reasons(reason: Reason) -> None:
             Stop.after(Reason.VANISHED, 1.234e-9),
             "the motion has shrunk to rounding, 1.2e-09 peak to peak (scaled)",
         ),
+        (
+            Stop.after(Reason.UNBOUNDED, 1.234e9),
+            "the parameter stands still, 1.2e+09 peak to peak (scaled) here",
+        ),
         (Stop.after(Reason.INTERRUPTED, 7), "after 7 points"),
         (Stop.after(Reason.MAX_POINTS, 7), "7 points"),
         (Stop.asked("LP", 1), "LP met 1 time"),

@@ -34,6 +34,33 @@ def test_damping_ratios_and_what_does_not_oscillate() -> None:
     assert np.isnan(found.frequencies[0, 1:]).all() and np.isnan(found.damping[0, 1:]).all()
 
 
+def test_whirl_of_what_is_overdamped_is_none() -> None:
+    """Assert that pairs that gyroscopic moments make of overdamped motions hide no natural frequency.
+
+    Two planes, a soft mode each and a stiff one that is overdamped: alike in both planes, that is a double
+    real exponent, which the gyroscopic matrix parts along the imaginary axis.
+    """
+    once = np.diag([1.0, 1e8])
+    damping, turning = np.diag([0.02, 1e6]), np.diag([0.1, 1.0])
+    plane = np.zeros((2, 2))
+    matrices = sym.Matrices(
+        np.eye(4),
+        np.block([[damping, plane], [plane, damping]]),
+        np.block([[once, plane], [plane, once]]),
+        G=np.block([[plane, turning], [-turning, plane]]),
+    )
+    found = sym.campbell(matrices, np.linspace(0.0, 3.0, 13), 4)
+    every = np.linalg.eigvals(
+        np.block([[np.zeros((4, 4)), np.eye(4)], [-matrices.K, -matrices.C - 3.0 * matrices.G]])
+    )
+    assert (every.imag > 0).sum() == 4  # the two of the overdamped ones are there
+    assert np.isfinite(found.frequencies).sum(axis=1).tolist() == [2] * 13
+    for speed, row in zip(found.speeds, found.frequencies, strict=True):  # of x + iy
+        exact = np.sort(abs(np.roots([1.0, 0.02 - 0.1j * speed, 1.0]).imag))
+        assert row[:2] == pytest.approx(exact, rel=1e-6)
+    assert len(found.critical()) == 2
+
+
 @pytest.mark.parametrize(
     ("order", "expected"), [(1.0, [0.5, 1.4, 2.5]), (0.5, [1.0, 3.0]), (2.0, [0.25]), (9.0, [1 / 18])]
 )

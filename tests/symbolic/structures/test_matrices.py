@@ -10,7 +10,10 @@ import pytest
 import scipy
 
 import symbolic as sym
+from symbolic.structures.beam import bending_element, chained
 from symbolic.structures.matrices import modes
+from symbolic.structures.modal import LooseError
+from symbolic.structures.rounding import hidden, uncertainty
 
 BEAM = {"length": 2.0, "bending": 3.0, "mass_per_length": 5.0}
 
@@ -78,6 +81,42 @@ def test_lanczos_finds_what_the_full_problem_has() -> None:
     exact = (2 * np.sin(np.arange(6) * np.pi / (2 * n))) ** 2
     np.testing.assert_allclose(squares, exact, atol=1e-12)
     np.testing.assert_allclose(shapes.T @ shapes, np.eye(6), atol=1e-9)
+
+
+@pytest.mark.parametrize(("left", "first"), [("clamped", 1.8751040687119611), ("free", 4.730040744862704)])
+@pytest.mark.parametrize(("elements", "error"), [(1000, 1e-5), (5000, 2e-3)])
+def test_fine_meshes_have_their_first_frequency(left: Any, first: float, elements: int, error: float) -> None:
+    """Assert the closed form to what rounding of the matrices leaves, the same each time."""
+    fine = sym.beam(**BEAM, elements=elements, left=left)
+    exact = first**2 * np.sqrt(3.0 / 5.0) / 2.0**2 / (2 * np.pi)
+    assert fine.first_frequency == pytest.approx(exact, rel=error)
+    assert fine.first_frequency == fine.first_frequency
+    squares, shapes = modes(fine.K, fine.M, 5)
+    unsure = uncertainty(fine.K, shapes)
+    elastic = ~hidden(fine.K, squares, shapes)
+    assert elastic.tolist() == [left == "clamped"] * 2 + [True] * 3
+    k = int(np.flatnonzero(elastic)[0])
+    assert abs(np.sqrt(squares[k]) / (2 * np.pi) / exact - 1) < unsure[k] / squares[k]  # the estimate sees it
+
+
+def test_meshes_too_fine_are_refused() -> None:
+    """Assert the sentences, of a beam and of a user's own matrices of 20,000 degrees of freedom."""
+    with pytest.raises(ValueError, match="^elements is 5001; it must be at most 5000: rounding of K hides"):
+        sym.beam(**BEAM, elements=5001)
+    stiffness, mass = (chained(m, 10000, 2)[2:, 2:] for m in bending_element(2e-4, 3.0))
+    own = sym.Structure(mass, K=stiffness, at={"tip": 19998}, modes=4)
+    with pytest.raises(LooseError, match="^structure 'structure' has 1 modes that rounding of K, of a free"):
+        own.modal(0.0)
+
+
+def test_uncertainty_by_rounding() -> None:
+    """Assert eps (sum (phi_i K_ij phi_j)^2)^(1/2) of two masses, by hand, dense and sparse."""
+    stiffness, shape = np.array([[3.0, -2.0], [-2.0, 2.0]]), np.array([[0.5], [2.0]])
+    by_hand = np.finfo(float).eps * np.sqrt((3 * 0.25) ** 2 + 2 * 2.0**2 + 8.0**2)
+    for each in (stiffness, scipy.sparse.csr_array(stiffness)):
+        assert uncertainty(each, shape) == pytest.approx([by_hand], rel=1e-14)
+        below, above = (hidden(each, np.array([by_hand * 100 * f]), shape) for f in (0.99, 1.01))
+        assert below.tolist() == [True] and above.tolist() == [False]
 
 
 @pytest.mark.parametrize(

@@ -151,6 +151,70 @@ def test_rotor_of_ross() -> None:
         sym.ross_matrices(nothing)
 
 
+class WholeRotor(Rotor):
+    """The same with axial motion and torsion, free as ROSS leaves them, to which `pitch` couples bending."""
+
+    number_dof = 6
+
+    def __init__(self, pitch: float) -> None:
+        super().__init__(0.0)
+        self.pitch = pitch
+
+    def _whole(self, lateral: Any, rest: float) -> Any:
+        """A matrix of nodes with x, y, z, alpha, beta, theta from one with x, y, alpha, beta."""
+        count = len(lateral) // 4
+        bending = [6 * node + k for node in range(count) for k in (0, 1, 3, 4)]
+        found = np.zeros((6 * count, 6 * count))
+        found[np.ix_(bending, bending)] = lateral
+        for k in (2, 5):
+            each = np.arange(k, 6 * count, 6)
+            chain = (
+                np.eye(count)
+                if rest > 0
+                else 2e6 * np.eye(count) - 1e6 * (np.eye(count, k=1) + np.eye(count, k=-1))
+            )
+            if rest == 0:
+                chain[0, 0] = chain[-1, -1] = 1e6
+            found[np.ix_(each, each)] = chain * (rest or 1.0)
+        return found
+
+    def M(self) -> Any:
+        """Mass."""
+        return self._whole(self.structure.M, 3.0)
+
+    def C(self, frequency: float) -> Any:
+        """Damping, none but in bending."""
+        found = self._whole(self.structure.C, 1e-300)
+        found[0, 2] = self.pitch
+        return found
+
+    def K(self, frequency: float) -> Any:
+        """Stiffness."""
+        return self._whole(self.structure.K, 0.0)
+
+    def G(self) -> Any:
+        """Gyroscopic matrix."""
+        return self._whole(self.structure.G, 1e-300)
+
+
+def test_rotor_of_ross_with_axial_motion_and_torsion() -> None:
+    """Assert that what is loose is named, that bending alone is that of the lateral rotor, or is refused."""
+    whole = sym.Structure(sym.ross_matrices(WholeRotor(0.0)), at={"disc": ("x3", "y3")})
+    with pytest.raises(
+        ValueError, match="rigid-body modes .* of degrees of freedom z0, theta0, z1, theta1, z2, "
+    ):
+        whole.modal(100.0)
+    bending = sym.ross_matrices(WholeRotor(0.0), lateral=True)
+    for name in "MCKG":
+        np.testing.assert_array_equal(getattr(bending, name), getattr(rotor(), name))
+    assert bending["x1"] == 4 and bending["beta6"] == 27
+    assert sym.Structure(bending, at={"disc": ("x3", "y3")}).modal(100.0).exponents.imag.max() > 0
+    with pytest.raises(
+        ValueError, match="^lateral is True, but C couples bending to axial motion or torsion$"
+    ):
+        sym.ross_matrices(WholeRotor(1.0), lateral=True)
+
+
 def test_bad_input_is_refused() -> None:
     """Assert one sentence for each."""
     full = damped(3)
