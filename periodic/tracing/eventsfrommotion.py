@@ -26,7 +26,7 @@ from periodic.refinement.adaptation import refined
 from periodic.system import System
 from periodic.tracing.follow import Follow
 from periodic.tracing.heldplaces import off_limits
-from periodic.tracing.settling import settled
+from periodic.tracing.settling import settled_or_none
 from periodic.tracing.steps.patternchange import Crossed
 from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.steps.wayacross import way_and_tangent
@@ -149,7 +149,7 @@ class _Search:
         """Yield the motion to which a simulation from an orbit settles, and the same settled further."""
         method, system = self.solver.discretisation, self.solver.problem.system
         if method.settles(system):
-            yield from settled(method, system, near)
+            yield from settled_or_none(method, system, near)
 
     def _solved(self, guess: Orbit) -> Crossed | None:
         """The orbit near a guess, with its distance from the base, if the branch goes on there."""

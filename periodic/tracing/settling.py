@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
 from typing import cast
 
@@ -21,11 +22,17 @@ def settled(method: Discretisation, system: System, start: Orbit) -> Iterator[Or
     """Yield the motion to which a system settles from the beginning of an orbit, with its parameters.
 
     By the method's own simulation, or by integration of all states; then the same motion settled further.
-    Nothing where it does not settle within PERIODS, where its integration fails, and for a system that cannot
-    be integrated.
+    Nothing where it does not settle within PERIODS, and for a system that cannot be integrated. Raises
+    FAILURES where its integration fails.
     """
     own = method.settled(system, start)
     yield from _integrated(method, system, start) if own is None else own
+
+
+def settled_or_none(method: Discretisation, system: System, start: Orbit) -> Iterator[Orbit]:
+    """Yield the same; nothing where the integration fails."""
+    with contextlib.suppress(*FAILURES):
+        yield from settled(method, system, start)
 
 
 def _integrated(method: Discretisation, system: System, start: Orbit) -> Iterator[Orbit]:
@@ -34,16 +41,13 @@ def _integrated(method: Discretisation, system: System, start: Orbit) -> Iterato
         return
     begin = start.nodes[0], start.algebraic[0, 0], None
     motion = Transient(method, cast(Moving, system), start.parameter, begin)
-    try:
-        for wanted in (STILL, CLOSE):
-            if not motion.settles(wanted):
-                return
-            orbit, path = motion.orbit(), motion.path
-            yield orbit or sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
-            if orbit is None:
-                return
-    except FAILURES:
-        return
+    for wanted in (STILL, CLOSE):
+        if not motion.settles(wanted):
+            return
+        orbit, path = motion.orbit(), motion.path
+        yield orbit or sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
+        if orbit is None:
+            return
 
 
 def held(system: System, motion: Orbit) -> list[str]:

@@ -22,7 +22,7 @@ from periodic.tracing.collapse import collapsed
 from periodic.tracing.eventsfrommotion import worded
 from periodic.tracing.follow import Follow
 from periodic.tracing.heldplaces import amid, unplaced
-from periodic.tracing.settling import held, settled
+from periodic.tracing.settling import held, settled, settled_or_none
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 """Parameters, over the wanted one, from which a branch to the first orbit is traced, tried in turn."""
@@ -162,7 +162,10 @@ class Start:
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
             return
         self.tried.append("a simulation left to settle")
-        yield from settled(method, problem.system, guess)
+        try:
+            yield from settled(method, problem.system, guess)
+        except FAILURES as failed:
+            self.tried[-1] += f" ({failed})"
 
     def _grown(self, guess: Orbit) -> Iterator[Orbit | None]:
         """Guesses on branches in another parameter that begin where it is 0: forcing, friction or load."""
@@ -257,8 +260,8 @@ class Start:
         first = self._fixed(self._rest(near) or near, sign)
         if not solver.discretisation.settles(system) or first.ok and np.isfinite(first.error.motion):
             return first
-        each = (self._adopted(solver, motion) for motion in settled(solver.discretisation, system, near))
-        found = (self._worded(motion, sign) for motion in each)
+        motions = settled_or_none(solver.discretisation, system, near)
+        found = (self._worded(self._adopted(solver, motion), sign) for motion in motions)
         return next((last for last in found if last.ok), first)
 
     @staticmethod

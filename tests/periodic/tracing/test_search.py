@@ -130,7 +130,8 @@ def test_first_orbit_that_becomes_another_one(monkeypatch: pytest.MonkeyPatch) -
 @pytest.fixture(autouse=True)
 def plain(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let motions settle to those of the method, and orbits be refined to themselves."""
-    monkeypatch.setattr(start, "settled", lambda method, system, near: iter(method.motions))
+    for name in ("settled", "settled_or_none"):
+        monkeypatch.setattr(start, name, lambda method, system, near: iter(method.motions))
     monkeypatch.setattr(start, "refined", lambda solver, found, fixed=False: found)
     monkeypatch.setattr(start, "worded", lambda solver, orbit, sign: solver.at_parameter(orbit, sign))
     monkeypatch.setattr(start, "held", lambda system, motion: [])
