@@ -17,7 +17,7 @@ from scipy.sparse.linalg import splu
 
 from symbolic.arrays import Array, Complex
 from symbolic.structures.damping import ModalDamping
-from symbolic.structures.matrices import DENSE, Matrices, dense, modes, sparse
+from symbolic.structures.matrices import DENSE, Matrices, Matrix, dense, modes, sparse
 from symbolic.structures.rounding import hidden
 
 MODES = 200
@@ -88,10 +88,7 @@ class ModalForm:
         loads = np.zeros((n, k))
         loads[list(freedoms), np.arange(k)] = 1.0
         loads -= mass @ (phi @ (phi.T @ loads))
-        if sparse.issparse(stiffness):
-            found: Array = np.array(splu(sparse.csc_array(stiffness)).solve(loads), dtype=float)
-        else:
-            found = np.linalg.solve(stiffness, loads).astype(float)
+        found = _answer(stiffness, loads)
         return np.asarray(found - phi @ (phi.T @ (mass @ found)))
 
     def mobility(self, freedoms: Sequence[int]) -> Array:
@@ -102,6 +99,17 @@ class ModalForm:
     def static(self, freedoms: Sequence[int]) -> Array:
         """Return the static flexibility (n, k) in m/N of the modes."""
         return np.asarray(-(self.shapes @ (self.inputs[:, list(freedoms)] / self.exponents[:, None])).real)
+
+    def error(self, freedoms: Sequence[int]) -> float:
+        """Return by how much modes and residual miss the static flexibility K^-1 of degrees of freedom.
+
+        As a part of it. It sees modes that are missing, or wrong: their sum is all of it.
+        """
+        loads = np.zeros((len(self.shapes), len(freedoms)))
+        loads[list(freedoms), np.arange(len(freedoms))] = 1.0
+        exact = _answer(self.matrices.K, loads)
+        missed = self.static(freedoms) + self.residual(freedoms) - exact
+        return float(np.abs(missed).max() / np.abs(exact).max())
 
 
 def modal_form(
@@ -246,6 +254,13 @@ def _coupled(name: str, matrices: Matrices, damping: Array) -> ModalForm:
     kept = values.imag >= 0
     twice = np.where(values[kept].imag > 0, 2.0, 1.0)
     return ModalForm(values[kept] + 0j, shapes[:, kept] * twice + 0j, drive[kept] + 0j, matrices)
+
+
+def _answer(stiffness: Matrix, loads: Array) -> Array:
+    """K^-1 applied to loads."""
+    if sparse.issparse(stiffness):
+        return np.array(splu(sparse.csc_array(stiffness)).solve(loads), dtype=float)
+    return np.asarray(np.linalg.solve(stiffness, loads), dtype=float)
 
 
 def _loose(name: str, kind: str, matrices: Matrices, shapes: Array) -> LooseError:

@@ -65,6 +65,9 @@ BACK = "turned back"
 APART = 1e-3
 """By which part peaks to peak of states differ at least, where it came back at another orbit, past folds."""
 
+PHYSICAL = ("BOUND", "UNBOUNDED", "VANISHED")
+"""Ends that are the range's, or the machine's: there is no motion of the kind beyond."""
+
 HELD = "holds all along"
 """What a branch says where friction holds the motion for good: it is at rest, anywhere."""
 
@@ -100,7 +103,7 @@ class Row:
     @property
     def fate(self) -> str:
         """The column of the page that it is counted in."""
-        if self.reason == "BOUND" and not (BACK in self.told and self.retraced):
+        if self.reason in PHYSICAL and not (BACK in self.told and self.retraced):
             return "to the end"
         if HELD in self.told:
             return "friction holds"

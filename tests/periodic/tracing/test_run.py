@@ -29,7 +29,7 @@ def solution(value: float = 1.0, name: str = "") -> Any:
 
 def met(label: Label, value: float = 1.0, name: str = "", shrunk: bool = False) -> Any:
     """A special point."""
-    return SimpleNamespace(label=label, name=name, solution=solution(value), shrunk=shrunk)
+    return SimpleNamespace(label=label, name=name, solution=solution(value), shrunk=shrunk, within=0.25)
 
 
 @pytest.fixture
@@ -42,8 +42,9 @@ def run(monkeypatch: pytest.MonkeyPatch) -> Continuation:
     own.collected = [point("first"), point("second")]
     own.state = State(solution(1.0), solution(1.5), 1, 0.1, 4, 3, True, {}, 2, 1e-3)
 
-    def emitted(self: Continuation, found: Any, label: Label, event: str = "") -> Any:
+    def emitted(self: Continuation, found: Any, label: Label, event: str = "", within: float = 0.0) -> Any:
         self.collected.append(point(found.name, label, event, found.value))
+        self.collected[-1].within = within  # type: ignore[attr-defined]
         return self.collected[-1]
 
     monkeypatch.setattr(Continuation, "_emitted", emitted)
@@ -199,7 +200,6 @@ def test_branch_goes_on_beyond_a_change(
     """Assert the orbit beyond with its label, and the next step: a first one after a grazing."""
     found = Crossed(solution(2.1, "beyond"), distance, grazes)
     monkeypatch.setattr(continuation, "crossed", lambda *_: found)
-    monkeypatch.setattr(continuation, "at_once", lambda *_: [])
     points = list(run._crossed(change(grazes=change_grazes), wanted))
     assert [(p.name, p.label) for p in points] == [("beyond", Label.GRAZING if grazes else Label.NONE)]  # type: ignore[attr-defined]
     state = run.state
@@ -212,13 +212,15 @@ def test_branch_goes_on_beyond_a_change(
 @pytest.mark.parametrize("grazes", [True, False])
 def test_special_points_at_a_change(grazes: bool, run: Continuation, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that they lie beyond a grazing, and before the orbit beyond another change that is final."""
-    monkeypatch.setattr(continuation, "crossed", lambda *_: Crossed(solution(2.1, "beyond"), 0.1, grazes))
-    monkeypatch.setattr(continuation, "at_once", lambda *_: [Label.FOLD])
+    found = Crossed(solution(2.1, "beyond"), 0.1, grazes, [Label.FOLD], within=0.5)
+    monkeypatch.setattr(continuation, "crossed", lambda *_: found)
     list(run._crossed(change(final=True), 0.1))
     beyond = (Label.GRAZING if grazes else Label.NONE, 2.1)
     own = (Label.FOLD, 2.1 if grazes else 2.0)
-    found = [(p.label, p.value) for p in run.collected[2:]]  # type: ignore[attr-defined]
-    assert found == ([beyond, own] if grazes else [own, beyond])
+    each = [(p.label, p.value) for p in run.collected[2:]]  # type: ignore[attr-defined]
+    assert each == ([beyond, own] if grazes else [own, beyond])
+    blurs = {p.label: p.within for p in run.collected[2:]}  # type: ignore[attr-defined]
+    assert blurs == {beyond[0]: 0.0, Label.FOLD: 0.5}
 
 
 @pytest.mark.parametrize(
@@ -266,8 +268,7 @@ def test_special_points_at_a_change_that_is_not_final(
     run: Continuation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Assert that the branch is first followed nearer to it."""
-    monkeypatch.setattr(continuation, "crossed", lambda *_: Crossed(solution(2.1), 0.1, False))
-    monkeypatch.setattr(continuation, "at_once", lambda *_: [Label.FOLD])
+    monkeypatch.setattr(continuation, "crossed", lambda *_: Crossed(solution(2.1), 0.1, False, [Label.FOLD]))
     assert list(run._crossed(change(), 0.7)) == [] and labels(run) == []
     assert run.state is not None and run.state.ds == 0.7
 

@@ -125,4 +125,4 @@ def test_judge_looks_closer_before_it_condemns() -> None:
     assert min(apart[0], 2 * np.pi - apart[0]) == pytest.approx(0.01, abs=2e-3)
     scales = np.array([system.states[0].scale])
     assert judged(drawn, scales, point, 1e-6).multipliers < 1e-5
-    assert _compared(drawn, scales, point, 100).multipliers > 1e-3
+    assert _compared(drawn, scales, point, 100, 1e-6).multipliers > 1e-3

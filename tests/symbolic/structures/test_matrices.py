@@ -12,7 +12,7 @@ import scipy
 import symbolic as sym
 from symbolic.structures.beam import bending_element, chained
 from symbolic.structures.matrices import modes
-from symbolic.structures.modal import LooseError
+from symbolic.structures.modal import LooseError, ModalForm
 from symbolic.structures.rounding import hidden, uncertainty
 
 BEAM = {"length": 2.0, "bending": 3.0, "mass_per_length": 5.0}
@@ -107,6 +107,17 @@ def test_meshes_too_fine_are_refused() -> None:
     own = sym.Structure(mass, K=stiffness, at={"tip": 19998}, modes=4)
     with pytest.raises(LooseError, match="^structure 'structure' has 1 modes that rounding of K, of a free"):
         own.modal(0.0)
+
+
+@pytest.mark.parametrize(("error", "said"), [(0.0123, "by 1.2 %, where 1 % is taken"), (2.0, "by 2e.02 %")])
+def test_modes_that_miss_the_flexibility_are_refused(
+    error: float, said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert the sentence where a model is compiled."""
+    monkeypatch.setattr(ModalForm, "error", lambda self, freedoms: error)
+    structure = sym.Structure(sym.beam(**BEAM), at={"x": "tip"})
+    with pytest.raises(ValueError, match=f"^the modes of structure 'structure' miss its static .* {said}"):
+        sym.compile(structure + sym.HarmonicForce(structure["x"], 1.0))
 
 
 def test_uncertainty_by_rounding() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import sparse
@@ -158,6 +160,24 @@ def test_gyroscopic_stiffness_that_holds() -> None:
     dynamic = 3 * np.eye(2) + 2j * 2 * gyroscopic
     exact = 1 / abs(np.linalg.inv(dynamic)[0, 0])
     assert holding(matrices, 2.0, [0], np.zeros(1))[0] == pytest.approx(exact, rel=1e-12)
+
+
+def test_modes_say_by_how_much_they_miss_the_static_flexibility() -> None:
+    """Assert rounding of all modes, and of some with their residual; a missing one, and wrong frequencies."""
+    stiffness = np.array([[5.0, -1.0], [-1.0, 3.0]])
+    matrices = sym.Matrices(np.eye(2), None, stiffness)
+    gyroscopic = sym.Matrices(np.eye(2), np.array([[0.1, 0.5], [-0.5, 0.1]]), stiffness)
+    for given, count in ((matrices, None), (matrices, 1), (gyroscopic, None)):
+        assert modal_form("s", given, ModalDamping(), 1.0, count).error([0, 1]) < 1e-14
+    full = modal_form("s", matrices, ModalDamping(), 1.0, None)
+    missing = replace(full, exponents=full.exponents[:1], shapes=full.shapes[:, :1], inputs=full.inputs[:1])
+    exact = np.linalg.inv(stiffness)
+    squares, modes = np.linalg.eigh(stiffness)
+    share = np.outer(modes[:, 1], modes[:, 1]) / squares[1]
+    assert missing.error([0, 1]) == pytest.approx(abs(share).max() / abs(exact).max(), rel=1e-12)
+    assert missing.error([0]) == pytest.approx(abs(share[:, 0]).max() / abs(exact[:, 0]).max(), rel=1e-12)
+    off = replace(full, exponents=full.exponents * 1.01)  # as inputs are, by 1 / omega
+    assert off.error([0]) == pytest.approx(0.01 / 1.01, rel=1e-9)
 
 
 def test_structures_that_are_loose() -> None:

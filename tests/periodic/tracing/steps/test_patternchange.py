@@ -11,6 +11,7 @@ import pytest
 from support.joints import dry_friction
 
 import periodic as per
+from periodic.bifurcations.label import Label
 from periodic.correction.solution import Solution
 from periodic.system.precision import CONVERGED
 from periodic.tracing.steps import patternchange
@@ -297,6 +298,51 @@ def test_way_beyond_a_change(
     assert asked == list(range(tried))
 
 
+PD, NS = Label.DOUBLING, Label.TORUS
+
+
+@pytest.mark.parametrize(
+    ("labels", "spare", "grazes", "taken", "within", "tried"),
+    [
+        ([[PD], [], [PD]], (), True, 1, 0.3, 2),
+        ([[PD], [PD], [PD]], (), True, 0, 0.1, 3),
+        ([[PD, NS], [PD], [PD, NS]], (), True, 1, 0.1, 3),
+        ([[PD], [PD], []], (2,), True, 0, 0.3, 2),
+        ([[PD], []], (), False, 0, 0.4, 1),
+        ([[PD], None, None], (), True, 0, 0.4, 3),
+    ],
+)
+def test_excursion_with_fewer_special_points(
+    labels: list[list[Label] | None],
+    spare: tuple[int, ...],
+    grazes: bool,
+    taken: int,
+    within: float,
+    tried: int,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Assert that beside a grazing smaller ones are tried, and how near the smallest with as many is."""
+    each = [SimpleNamespace(number=k, spare=k in spare) for k in range(len(labels))]
+    gaps = (0.4, 0.3, 0.1)
+    orbits = [
+        None if own is None else Crossed(end(1.0 + gap, 1.0), gap, False, own, gap)
+        for own, gap in zip(labels, gaps, strict=False)
+    ]
+    asked: list[int] = []
+
+    def along(solver: Any, at: Any, way: Any) -> Any:
+        asked.append(way.number)
+        return orbits[way.number]
+
+    monkeypatch.setattr(patternchange, "_along", along)
+    own: Any = SimpleNamespace(beyond=lambda system, orbit: iter(each), final=True, grazes=grazes)
+    solver: Any = SimpleNamespace(problem=SimpleNamespace(system=None))
+    result, best = crossed(solver, Reached(end(1.0, 1.0), 0.1, own)), orbits[taken]
+    assert result is not None and best is not None
+    assert result.solution is best.solution and result.labels == best.labels
+    assert (result.within, asked) == (within, list(range(tried)))
+
+
 @pytest.mark.parametrize(
     ("apart", "value", "ds", "grazes", "taken"),
     [
@@ -319,17 +365,20 @@ def test_orbit_beyond_a_change_is_near(
     monkeypatch.setattr(patternchange, "_accurate", lambda solver, found, condition: found)
     monkeypatch.setattr(patternchange, "distance", lambda problem, one, other: 3.0 * apart)
     monkeypatch.setattr(patternchange, "size_of", lambda orbit: 3.0)
+    monkeypatch.setattr(patternchange, "at_once", lambda before, after: [Label.DOUBLING])
     solver: Any = SimpleNamespace(
         problem=SimpleNamespace(system=None, low=0.0, high=1.0),
         transfers=lambda orbit, mesh, phases: ["guess"],
         discretisation=SimpleNamespace(change=lambda system, one, other: None),
     )
     way: Any = SimpleNamespace(parameter=None, mesh=None, phases=None, condition=None, grazes=False)
-    at = Reached(SimpleNamespace(orbit="old"), ds, SimpleNamespace(grazes=grazes))  # type: ignore[arg-type]
+    old: Any = SimpleNamespace(orbit="old", value=0.25)
+    at = Reached(old, ds, SimpleNamespace(grazes=grazes))  # type: ignore[arg-type]
     found = patternchange._along(solver, at, way)
     assert (found is not None) is taken
     if found is not None:
         assert found.solution is new and found.distance == pytest.approx(apart) and not found.grazes
+        assert found.labels == [Label.DOUBLING] and found.within == abs(value - 0.25)
     new.error.motion = np.inf
     assert patternchange._along(solver, at, way) is None
     new.error.motion, new.ok = 0.0, False

@@ -195,9 +195,9 @@ def test_step_beyond_a_change(
     """Assert its length and the least one: as long as before, the first one again after grazing."""
     from periodic.tracing import continuation
 
-    found = SimpleNamespace(grazes=grazes, distance=distance, solution=SimpleNamespace(name="beyond"))
+    beyond = SimpleNamespace(name="beyond")
+    found = SimpleNamespace(grazes=grazes, distance=distance, solution=beyond, labels=(), within=0.0)
     monkeypatch.setattr(continuation, "crossed", lambda *_: found)
-    monkeypatch.setattr(continuation, "at_once", lambda *_: [])
     monkeypatch.setattr(continuation, "replace", lambda state, **changed: changed)
     change = SimpleNamespace(grazes=False, final=False, last=False, strict=False, nearer=False)
     own: Any = SimpleNamespace(
