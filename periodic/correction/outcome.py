@@ -21,6 +21,7 @@ class Outcome(Enum):
     SLIDES = "the motion would slide along a jump of the equations, which is not followed here"
     COLLAPSED = "the orbit shrank to an equilibrium"
     MOVED = "the orbit became another one on a new mesh"
+    HELD = "a jump of the equations holds all along, at a place that is not determined"
     UNDETERMINED = "the phases of some events are not determined, the orbit is the same wherever they are"
 
 

@@ -14,7 +14,7 @@ from periodic.correction.tolerance import Accuracy
 from periodic.events.motions import STILL
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.sampling import sampled
-from periodic.system import Moving, System, surfaces_of
+from periodic.system import STUCK, Moving, System, surfaces_of
 from periodic.tracing.transient import CLOSE, Transient
 
 
@@ -61,4 +61,5 @@ def held(system: System, motion: Orbit) -> list[str]:
     still = values <= Accuracy.STANDARD * slopes * motion.span()
     each = [s for s in surfaces_of(system) if s.releases is not None]
     unknown = [s.switch for s in each if s.place is None and not s.alone]
-    return [system.switches[k].name for k in unknown if still[k]]
+    modes = dict(motion.mesh.modes)
+    return [system.switches[k].name for k in unknown if still[k] or modes.get(k) == STUCK]

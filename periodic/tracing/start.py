@@ -63,6 +63,8 @@ class Start:
             first = self._found(guess, sign)
             if not first.ok:
                 return first
+            if held(self.solver.problem.system, first.orbit):
+                return first.failed(Outcome.HELD)
             loose = unplaced(self.solver.problem.system, first.orbit, guess.mesh)
             return amid(self.solver, first, loose, sign)
         except SpentError:
