@@ -285,6 +285,7 @@ class _Split:
             unexcited=unexcited,
             waved=waved,
             outputs=shown,
+            sided=replace(e.sided, residual=residual),
             switches=ca.substitute(e.switches, e.state, full_state),
             guards=ca.substitute(e.guards, e.state, full_state),
             rest_state=e.rest_state[[int(k) for k in self.places]],

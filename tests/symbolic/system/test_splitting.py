@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from support.models import PARTS
 
@@ -62,3 +63,16 @@ def test_what_cannot_be_condensed_is_refused() -> None:
         condensed(whole("relaxation"))
     with pytest.raises(ValueError, match="^system is 1; it must be a CompiledSystem$"):
         condensed(1)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", LEFT)
+def test_residual_on_sides_is_that_of_what_is_left(name: str) -> None:
+    """Assert that without jumps it is the residual itself, of the symbols that are left."""
+    system = condensed(whole(name))
+    state, unknown = system.rest(system.nominal)
+    rate = np.linspace(0.1, 0.4, len(state))
+    point = rate[None], state[None] + 0.2, unknown[None] + 0.3, np.array([0.7]), system.nominal
+    plain = system.linearise(*point)
+    beside = system.linearise_beside(*point, np.zeros((1, 0)))
+    np.testing.assert_array_equal(beside.residual, plain.residual)
+    np.testing.assert_array_equal(beside.d_state, plain.d_state)
