@@ -40,6 +40,7 @@ from .shooting.shooting import Shooting
 from .tori.invariant import Torus
 from .tori.torus import TorusError, torus
 from .tracing.continuation import Continuation
+from .tracing.pointsat import points_at
 from .tracing.resumption import Interrupted, ResumeError
 from .tracing.steps.stepsize import ArclengthControl
 from .tracing.trace import continuation, trace
@@ -109,6 +110,7 @@ __all__ = [
     "page",
     "plot",
     "plots",
+    "points_at",
     "recovered",
     "recovery",
     "sampled",

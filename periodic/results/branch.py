@@ -123,6 +123,11 @@ class Branch(Record):
         return tuple(p for p in self.points if label == p.label or (label and label == p.event))
 
     @property
+    def peaks(self) -> dict[str, tuple[Point, ...]]:
+        """The points at which each peak that was asked for is greatest or least along the branch, by name."""
+        return {name: self.labelled(name) for name in self.made.get("peaks", {})}
+
+    @property
     def _entries(self) -> list[Entry]:
         low, high = self.made.get("bounds", (0.0, 1.0))
         return [point.entry(high - low) for point in self.points]
