@@ -135,3 +135,24 @@ def test_branch_of_a_file_that_is_older_than_peaks() -> None:
     with pytest.raises(per.ResumeError, match="peaks"):
         watch = per.Watch(peaks={"resonance": per.PeakToPeak("x")})
         per.trace(system, "Omega", (1.2, 1.5), guess=older, watch=watch)
+
+
+def test_optimum_of_a_design_scales_with_its_loads() -> None:
+    """Assert that twice the force and twice the slip limit give twice the lowest peak, at twice the limit."""
+    damper, swing = sym.scene("jenkins-damper"), per.PeakToPeak("x")
+    found = []
+    for times in (1.0, 2.0):
+        force = times * float(damper.nominal[[p.name for p in damper.parameters].index("F")])
+        response = per.trace(damper, "Omega", (0.9, 1.4), values={"F_slider": 0.1 * times, "F": force})
+        highest = max(response, key=lambda point: point.peak_to_peak("x"))
+        curve = per.trace(
+            damper,
+            "F_slider",
+            (0.09 * times, 0.2 * times),
+            guess=highest.orbit,
+            determined={"Omega": per.Peak(swing)},
+            watch=per.Watch(peaks={"lowest": swing}),
+        )
+        (best,) = curve.peaks["lowest"]
+        found.append((best.peak_to_peak("x") / times, best.parameter / times))
+    assert found[0] == pytest.approx(found[1], rel=1e-8)
