@@ -168,7 +168,8 @@ class ModalFloquet:
         beside = values - factor
         size = beside**2 + cross**2
         found = beside * vectors + cross * vectors[partner]
-        return np.where(np.abs(size) < ALONE**2, vectors, found / np.where(size == 0, 1.0, size))
+        alone = np.abs(size) < ALONE**2
+        return np.where(alone, vectors, found / np.where(alone, 1.0, size))
 
     def answers(self, basis: Array) -> Array:
         """Return forces and own states at the points in free motion from the columns of a basis."""
