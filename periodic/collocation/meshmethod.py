@@ -156,6 +156,12 @@ class MeshMethod(Discretisation):
         nodes = permuted(system, orbit, phases)
         return None if nodes is None else self.with_nodes(orbit, nodes)
 
+    def eased(self, orbit: Orbit) -> tuple[Mesh, Array] | None:
+        """Return the mesh without event nodes at kinks of derivatives, those of negative levels."""
+        each = list(zip(orbit.mesh.events, map(float, orbit.phases), strict=True))
+        nodes = [(event, phase) for event, phase in each if event.level >= 0]
+        return None if len(nodes) == len(each) else self.with_nodes(orbit, nodes)
+
     def with_nodes(self, orbit: Orbit, nodes: Sequence[Node]) -> tuple[Mesh, Array]:
         """Return the mesh of an orbit with other event nodes, and their phases."""
         events, places = tuple(event for event, _ in nodes), np.array([place for _, place in nodes])

@@ -219,6 +219,21 @@ class Discretisation(Protocol):
         """
         return None
 
+    def eased(self, orbit: Orbit) -> tuple[Mesh, Array] | None:
+        """Return a mesh without event nodes that accuracy alone has asked for, if there are any.
+
+        Parameters
+        ----------
+        orbit : Orbit
+            An orbit.
+
+        Returns
+        -------
+        tuple of Mesh and ndarray, or None
+            The mesh, and the phases of the event nodes that are left.
+        """
+        return None
+
     def rewritten(self, system: System, orbit: Orbit) -> tuple[Mesh, Array] | None:
         """Return a mesh with the events of an orbit's own motion, followed in time, with their phases.
 

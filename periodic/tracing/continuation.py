@@ -219,6 +219,8 @@ class Continuation:
         assert self.state is not None
         while self.state.steps + 1 < self.control.max_points:
             step = self._steps.take(self.state, base, worded=True)
+            if isinstance(step, Refused) and (eased := self._steps.eased(base)) is not None:
+                step = self._steps.take(self.state, eased, worded=True)
             if isinstance(step, Refused) and self._reread(self.state.last):
                 yield self.collected[-1]
                 if self.stop is not None:

@@ -21,6 +21,7 @@ from periodic.bifurcations.turningpoint import Found
 from periodic.bifurcations.withinstep import RejectedError
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
+from periodic.refinement.adaptation import carried
 from periodic.results.stop import Reason, Stop
 from periodic.tracing.state import State
 from periodic.tracing.steps.foresight import Foresight
@@ -193,6 +194,16 @@ class Steps:
         if better is new or self.unaccounted([entry(found, Label.NONE) for found in (new, better)]):
             return new  # on another mesh it may have passed a special point that lies as near
         return better
+
+    def eased(self, base: Solution) -> Solution | None:
+        """Return a base on a mesh without the event nodes that its method can do without, if there is one.
+
+        Where elements exchange their ranks, a node of a mild kink ceases to be a crossing, and Newton's method
+        fails beyond.
+        """
+        choice = self.solver.discretisation.eased(base.orbit)
+        found = None if choice is None else carried(self.solver, base, *choice)
+        return found if found is not None and found.ok else None
 
     @cached_property
     def _stepper(self) -> Stepper:
