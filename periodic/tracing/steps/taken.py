@@ -198,7 +198,7 @@ class Steps:
     def eased(self, base: Solution) -> Solution | None:
         """Return a base on a mesh without the event nodes that its method can do without, if there is one.
 
-        Where elements exchange their ranks, a node of a mild kink is no crossing beyond: Newton's method fails.
+        Where elements exchange their ranks, a node of a mild kink is no crossing beyond, and Newton fails.
         """
         choice = self.solver.discretisation.eased(base.orbit)
         found = None if choice is None else carried(self.solver, base, *choice)
