@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from periodic.bifurcations.label import Label
-from periodic.checks import number
+from periodic.checks import number, shown
 from periodic.correction.condition import Condition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.tolerance import Accuracy, Tolerance
@@ -55,6 +55,8 @@ def points_at(
     ArithmeticError
         Where the value is not reached from the points beside it, as where tol or method is another one.
     """
+    if not isinstance(branch, Branch):
+        raise ValueError(f"branch is {shown(branch)}; it must be a Branch")
     wanted = number("value", value)
     if not len(branch):
         raise ValueError(f"branch has no points; it ended with: {branch.stop}")

@@ -82,6 +82,9 @@ def test_values_that_are_not_on_the_branch() -> None:
     """Assert the sentences, and what is said of points of another force."""
     system = duffing()
     branch = per.trace(system, "Omega", (2.5, 3.0), start=3.0)
+    nothing: Any = None
+    with pytest.raises(ValueError, match="^branch is None; it must be a Branch$"):
+        per.points_at(system, nothing, 2.7)
     with pytest.raises(ValueError, match="^value is 4; the branch has Omega from 2.5 to 3$"):
         per.points_at(system, branch, 4.0)
     with pytest.raises(ValueError, match="^value is nan; the branch has Omega"):
