@@ -21,8 +21,11 @@ Array = NDArray[np.float64]
 TIMES = 10.0
 """An error is that many times what is claimed before it is wrong, as an estimate tells its order."""
 
-DIFFERENCES = 1e-6, 1e-7
-"""Steps of the differences, in the scale of a state; the smaller one as well where a point seems wrong."""
+DIFFERENCES = 1e-6, 1e-7, 1e-8
+"""Steps of the differences, in the scale of a state; the smaller ones too where a point seems wrong.
+
+Beside a grazing larger ones go from one pattern of contacts to another, and know multipliers less well.
+"""
 
 DIGITS = 1e-3
 """What differences know multipliers to beside kinks; so near to the unit circle stability is not judged."""
