@@ -53,13 +53,24 @@ def _integrated(method: Discretisation, system: System, start: Orbit) -> Iterato
 def held(system: System, motion: Orbit) -> list[str]:
     """Return along which jumps of the equations a motion slides all the time, by their switches' names.
 
-    There orbits are not isolated: the place at which friction holds is not determined.
+    There orbits are not isolated: the place at which friction holds is not determined. By its modes,
+    or by its values where it is at rest there.
     """
     states, tau = motion.nodes[:-1], motion.grid.left
     values = np.abs(system.switch(states, tau, motion.parameter)).max(axis=0)
     slopes = np.abs(system.switch_gradient(states, tau, motion.parameter)[0]).sum(axis=2).max(axis=0)
     still = values <= Accuracy.STANDARD * slopes * motion.span()
+    stuck = nowhere(system, motion)
+    return [system.switches[k].name for k in _without_place(system) if still[k] or k in stuck]
+
+
+def nowhere(system: System, orbit: Orbit) -> list[int]:
+    """Return the switches of jumps that an orbit's modes hold all along where nothing determines the place."""
+    modes = dict(orbit.mesh.modes)
+    return [k for k in _without_place(system) if modes.get(k) == STUCK]
+
+
+def _without_place(system: System) -> list[int]:
+    """The switches of jumps along which motions slide, but not those of what says where, or need not."""
     each = [s for s in surfaces_of(system) if s.releases is not None]
-    unknown = [s.switch for s in each if s.place is None and not s.alone]
-    modes = dict(motion.mesh.modes)
-    return [system.switches[k].name for k in unknown if still[k] or modes.get(k) == STUCK]
+    return [s.switch for s in each if s.place is None and not s.alone]

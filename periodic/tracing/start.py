@@ -22,7 +22,7 @@ from periodic.tracing.collapse import collapsed
 from periodic.tracing.eventsfrommotion import worded
 from periodic.tracing.follow import Follow
 from periodic.tracing.heldplaces import amid, unplaced
-from periodic.tracing.settling import held, settled, settled_or_none
+from periodic.tracing.settling import held, nowhere, settled, settled_or_none
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 """Parameters, over the wanted one, from which a branch to the first orbit is traced, tried in turn."""
@@ -63,7 +63,7 @@ class Start:
             first = self._found(guess, sign)
             if not first.ok:
                 return first
-            if held(self.solver.problem.system, first.orbit):
+            if nowhere(self.solver.problem.system, first.orbit):
                 return first.failed(Outcome.HELD)
             loose = unplaced(self.solver.problem.system, first.orbit, guess.mesh)
             return amid(self.solver, first, loose, sign)

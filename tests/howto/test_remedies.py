@@ -81,9 +81,9 @@ def test_friction_that_holds_is_written_as_such() -> None:
         assert "holds all along, at a place that is not determined" in branch.stop.detail
     q = sym.coordinate("q")
     model = sym.Mass(q, 1.0) + sym.Spring(q, 1.0) + sym.Damper(q, 0.1) + sym.HarmonicForce(q, 0.3)
-    system_ = sym.compile(model + sym.CoulombFriction(q, 0.5))
-    assert "place of q" in [parameter.name for parameter in system_.parameters]
-    held = per.trace(system_, "Omega", (0.5, 1.5), start=0.5)
+    rubbed = sym.compile(model + sym.CoulombFriction(q, 0.5))
+    assert "place of q" in [parameter.name for parameter in rubbed.parameters]
+    held = per.trace(rubbed, "Omega", (0.5, 1.5), start=0.5)
     assert held.stop.reason is per.Reason.BOUND and max(p.orbit.span() for p in held) < 1e-9
 
 

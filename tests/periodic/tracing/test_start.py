@@ -74,6 +74,30 @@ def test_what_was_tried_is_said() -> None:
     assert branch.stop.detail.endswith("); guess=per.sampled(...) takes a motion from a simulation")
 
 
+def test_rest_on_a_jump_that_nothing_pushes_is_an_orbit() -> None:
+    """Assert equilibria of a mass with friction, and the motion of another one beside it while it rests."""
+
+    def rubbed(x: Any, p: Any) -> dict[str, Any]:
+        return {"x": x.v, "v": p.f - x.x - 0.1 * x.v - 0.5 * sym.functions.sign(x.v)}
+
+    alone = sym.compile(sym.Equations(rubbed, {"x": 0.0, "v": 0.0}, {"f": 0.3}))
+    rests = per.trace(alone, "f", (-1.0, 1.0), method=per.Equilibrium())
+    assert rests.stop.reason is per.Reason.BOUND
+    assert [point.maximum["x"] for point in rests] == pytest.approx(rests.values, abs=1e-9)
+
+    def beside(x: Any, p: Any, wave: Any) -> dict[str, Any]:
+        first = -x.x - 0.1 * x.v - 0.5 * sym.functions.sign(x.v)
+        return {"x": x.v, "v": first, "y": x.u, "u": wave.cos - x.y - 0.1 * x.u}
+
+    both = sym.Equations(beside, dict.fromkeys(("x", "v", "y", "u"), 0.0), {"Omega": 0.5}, frequency="Omega")
+    branch = per.trace(sym.compile(both), "Omega", (0.5, 0.6))
+    assert branch.stop.reason is per.Reason.BOUND
+    for point in branch:
+        assert point.peak_to_peak("x") == 0.0
+        exact = 2 / abs(1 - point.parameter**2 + 0.1j * point.parameter)
+        assert point.peak_to_peak("y") == pytest.approx(exact, rel=1e-6)
+
+
 @pytest.mark.parametrize("factor", [0.25, 4.0])
 def test_way_that_ends_before_the_wanted_value_is_none(factor: float) -> None:
     """Assert that an approach from below or above counts only where it arrives; there it gives its orbit."""
