@@ -65,7 +65,7 @@ def held(system: System, motion: Orbit) -> list[str]:
 
 
 def nowhere(system: System, orbit: Orbit) -> list[int]:
-    """Return the switches of jumps that an orbit's modes hold all along where nothing determines the place."""
+    """Return the switches of jumps that an orbit's modes hold all along where no place is given."""
     modes = dict(orbit.mesh.modes)
     return [k for k in _without_place(system) if modes.get(k) == STUCK]
 

@@ -31,10 +31,15 @@ def system(force: Callable[[Any, Any, Any], Any], start: float = 0.0, **values: 
 def test_remedies_that_are_code_can_be_written() -> None:
     """Assert that each setting on the page is accepted as it stands there."""
     text = PAGE.read_text("utf-8")
-    settings = re.findall(r"`(?:control|method)=(per\.\w+\([^`()]*\))`", text)
-    assert len(settings) >= 4
+    settings = re.findall(r"`(?:control|method|watch)=(per\.[^`]*\))`", text)
+    assert len(settings) >= 5
     made = [eval(setting, {"per": per}) for setting in settings]
-    assert {type(each) for each in made} == {per.ArclengthControl, per.Collocation, per.Equilibrium}
+    assert {type(each) for each in made} == {
+        per.ArclengthControl,
+        per.Collocation,
+        per.Equilibrium,
+        per.Watch,
+    }
 
 
 @pytest.mark.parametrize(("start", "said"), [(0.0, "the equations were not finite"), (1.0, "")])
@@ -70,6 +75,19 @@ def test_logarithm_that_leaves_its_range(floor: float, finite: bool) -> None:
     if not finite:
         assert branch.stop.detail.startswith("the equations were not finite near the iterate")
         assert branch[-1].maximum["x"] == pytest.approx(1.0, abs=1e-2)
+
+
+def test_growth_ends_at_a_bound_of_ones_own() -> None:
+    """Assert that a parametric oscillator ends at the peak to peak of the page, and without it far beyond."""
+    driven = system(lambda x, p, w: -0.1 * x.v - (1 + 0.8 * w.cos) * x.x + 1e-4 * w.cos)
+    asked = re.search(r"`watch=(per\.Watch\([^`]*\))`", PAGE.read_text("utf-8"))
+    assert asked is not None
+    watch = eval(asked[1], {"per": per})
+    near = per.trace(driven, "Omega", (0.4, 3.0), start=0.5, watch=watch)
+    assert near.stop.reason is per.Reason.ASKED
+    assert near[-1].peak_to_peak("x") == pytest.approx(1e-3, rel=1e-9)
+    far = per.trace(driven, "Omega", (0.4, 3.0), start=0.5)
+    assert far.stop.reason is per.Reason.UNBOUNDED and far[-1].peak_to_peak("x") > 1e3
 
 
 def test_friction_that_holds_is_written_as_such() -> None:
