@@ -21,7 +21,7 @@ from periodic.condensed.floquet import Leading
 from periodic.condensed.linearised import Local, local_rows
 from periodic.condensed.operator import CondensedOperator
 from periodic.correction.arclength import ArclengthConstraint
-from periodic.correction.error import LEAST_VALUE, UNKNOWN, ErrorEstimate
+from periodic.correction.error import UNKNOWN, ErrorEstimate, unit_of
 from periodic.correction.newton import Equations, LinearisedEquations
 from periodic.correction.outcome import FAILURES
 from periodic.correction.problem import Problem
@@ -66,7 +66,7 @@ def estimate(
     between = np.abs(missing.gap + states + missing.on_fine(smooth))
     displacements = [k for k, state in enumerate(part.states) if state not in part.velocities]
     apart = max(between[:, :, displacements].max(initial=0.0), float(np.abs(answer.nodes).max()))
-    largest = max(abs(problem.value(orbit)), LEAST_VALUE * problem.scale)
+    largest = unit_of(problem.value(orbit), problem.scale)
     parameter = float(abs(answer.parameter) / largest)
     return ErrorEstimate(float(apart) / max(orbit.span(), LEAST_SPAN), multiplier, parameter)
 

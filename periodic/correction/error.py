@@ -93,27 +93,7 @@ class ErrorEstimate:
         float
             Its error (SI).
         """
-        return SAFETY * self.parameter * max(abs(value), LEAST_VALUE * scale)
-
-    def widened(self, within: float, value: float, scale: float) -> ErrorEstimate:
-        """Return the estimate of a point that lies somewhere about a value of the parameter.
-
-        Parameters
-        ----------
-        within : float
-            How far from it at most (SI).
-        value : float
-            The value (SI).
-        scale : float
-            Length of the range that it is in.
-
-        Returns
-        -------
-        ErrorEstimate
-            With that as the error of the parameter, where it is more.
-        """
-        relative = within / max(abs(value), LEAST_VALUE * scale)
-        return replace(self, parameter=max(self.parameter, relative))
+        return SAFETY * self.parameter * unit_of(value, scale)
 
     @property
     def worst(self) -> float:
@@ -140,6 +120,11 @@ UNKNOWN = ErrorEstimate(np.inf, np.inf, np.inf)
 
 LEAST_VALUE = 0.1
 """Least value of a parameter, as a part of its range, to which its error is relative."""
+
+
+def unit_of(value: float, scale: float) -> float:
+    """To what the error of a parameter is relative: its value, or a part of its range where that is more."""
+    return max(abs(value), LEAST_VALUE * scale)
 
 
 BEST = 2e-12
@@ -272,7 +257,7 @@ def relative(
     better: Callable[[], Orbit] | None = None,
 ) -> ErrorEstimate:
     """Return the estimate; rounding has the same part in `by_orbit` as in the orbit's own error."""
-    largest = max(abs(problem.value(orbit)), LEAST_VALUE * problem.scale)
+    largest = unit_of(problem.value(orbit), problem.scale)
     own, parameter = found.apart / max(orbit.span(), LEAST_SPAN), found.shift / largest
     by_orbit = _powers(spectrum, found.monodromy, found.fundamental[-1])
     rounding = by_orbit * min(1.0, BEST / max(own, parameter, BEST))

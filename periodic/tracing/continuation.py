@@ -14,6 +14,7 @@ from periodic.bifurcations.codimension2 import codim2
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import Course
 from periodic.bifurcations.turningpoint import Found, at_once
+from periodic.correction.error import unit_of
 from periodic.correction.identity import closes, repeats, same
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
@@ -288,8 +289,8 @@ class Continuation:
         problem = self.solver.problem
         columns = self.watch.measured(problem.full, problem.expand(solution.orbit))
         point = describe(solution, label, event, columns)
-        error = point.error.widened(within, solution.value, problem.scale)
-        point = replace(point, error=error)
+        error = max(point.error.parameter, within / unit_of(solution.value, problem.scale))
+        point = replace(point, error=replace(point.error, parameter=error))
         self.collected.append(point)
         return point
 

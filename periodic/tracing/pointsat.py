@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
 
 from periodic.bifurcations.label import Label
 from periodic.checks import number, shown
@@ -63,24 +63,13 @@ def points_at(
     low, high = branch.values.min(), branch.values.max()
     if not low <= wanted <= high:
         raise ValueError(f"value is {wanted:g}; the branch has {branch.parameter} from {low:g} to {high:g}")
-    settings = Settings(tol, determined, method)
+    traced = partial(trace, system, branch.parameter, tol=tol, determined=determined, method=method)
     beside = itertools.pairwise([*branch.points, branch[-1]])
-    each = (_between(system, branch.parameter, pair, wanted, settings) for pair in beside)
+    each = (_between(traced, pair, wanted) for pair in beside)
     return tuple(point for point in each if point is not None)
 
 
-@dataclass(frozen=True)
-class Settings:
-    """As `trace` takes them."""
-
-    tol: float | Tolerance
-    determined: Mapping[str, Condition] | None
-    method: Discretisation | None
-
-
-def _between(
-    system: System, parameter: str, pair: tuple[Point, Point], wanted: float, given: Settings
-) -> Point | None:
+def _between(traced: Callable[..., Branch], pair: tuple[Point, Point], wanted: float) -> Point | None:
     """The point at a value from the first of two points up to, but without, the second, if there is one.
 
     Of several points there, as a special one at a grazing, the last is taken.
@@ -91,12 +80,10 @@ def _between(
     if (here.parameter - wanted) * (there.parameter - wanted) >= 0:
         return None
     for near in sorted(pair, key=lambda point: abs(point.parameter - wanted)):
-        bounds = near.parameter, wanted
-        options: dict[str, Any] = {"tol": given.tol, "determined": given.determined, "method": given.method}
-        way = trace(system, parameter, bounds, start=near.parameter, guess=near.orbit, **options)
+        way = traced((near.parameter, wanted), start=near.parameter, guess=near.orbit)
         if len(way) and way[-1].parameter == wanted and way.stop.reason is Reason.BOUND:
             return replace(way[-1], label=Label.NONE)
     raise ArithmeticError(
-        f"{parameter} = {wanted:g} was not reached from the points at {here.parameter:g} and "
+        f"{way.parameter} = {wanted:g} was not reached from the points at {here.parameter:g} and "
         f"{there.parameter:g}: {way.stop}"
     )

@@ -22,9 +22,8 @@ from symbolic.equations.variables import Coordinate
 from symbolic.parts.stiffness import stiffness
 from symbolic.structures.damping import ModalDamping
 from symbolic.structures.matrices import DENSE, RELATIVE_STEP, Matrices, dense
-from symbolic.structures.modal import LooseError, ModalForm, holding, modal_form
+from symbolic.structures.modal import LooseError, ModalForm, holding, modal_form, refuse_inexact
 from symbolic.structures.modalslope import ModalSlope, modal_slope
-from symbolic.structures.rounding import LEFT
 
 WHOLE = 40
 """Most degrees of freedom of a structure that keeps all its states unasked, beside impacts."""
@@ -315,11 +314,7 @@ class Structure(Part):
         others = stiffness(assembly, [assembly.motion(coordinate) for _, coordinate in used])
         form = self._holding(assembly.nominal(assembly.omega), [k for k, _ in used], others)
         freedoms = [k for k, _ in used]
-        if (error := form.error(freedoms)) > LEFT:
-            raise ValueError(
-                f"the modes of structure {self.name!r} miss its static flexibility by {100 * error:.2g} %, "
-                f"where {100 * LEFT:g} % is taken: rounding hides it; take a coarser mesh"
-            )
+        refuse_inexact(self.name, form, freedoms)
         flexibility = np.diag(form.static(freedoms)[freedoms])
         sticking = self._sticking(assembly, form, [coordinate for _, coordinate in used])
         mobility = form.mobility(freedoms)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import operator
 from collections.abc import Mapping
@@ -10,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import scipy
-from scipy.sparse.linalg import ArpackNoConvergence, eigsh, splu
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh, splu
 
 from symbolic.arrays import Array
 from symbolic.checks import mapping, refusal, text, whole
@@ -194,7 +195,7 @@ def _by_lanczos(stiffness: Matrix, mass: Matrix, count: int) -> tuple[Array, Arr
     The nearer the shift is to the modes, the less of them is lost: first from one at which K is regular for
     certain, then from one just below the lowest elastic mode that this has found.
     """
-    if _is_regular(stiffness):
+    with contextlib.suppress(SingularError):
         squares, shapes = _about(stiffness, mass, count, 0.0)
         if not hidden(stiffness, squares, shapes).any():
             return squares, shapes
@@ -203,22 +204,23 @@ def _by_lanczos(stiffness: Matrix, mass: Matrix, count: int) -> tuple[Array, Arr
     return _about(stiffness, mass, count, -BELOW * float(elastic[0])) if len(elastic) else (squares, shapes)
 
 
-def _is_regular(stiffness: Matrix) -> bool:
-    """Whether K can be factorised at all."""
-    try:
-        splu(stiffness)
-    except RuntimeError:
-        return False
-    return True
+class SingularError(ArithmeticError):
+    """A pencil that cannot be factorised at a shift."""
 
 
 def _about(stiffness: Matrix, mass: Matrix, count: int, shift: float) -> tuple[Array, Array]:
     """The modes next to a shift, ascending; from one start, so that they are the same each time.
 
     Rayleigh's quotient has the errors of the shapes, by rounding of the factors, by their squares alone.
+    Raises SingularError where K - shift M is singular.
     """
     start = np.random.default_rng(0).normal(size=mass.shape[0])
-    _, shapes = eigsh(stiffness, count, mass, sigma=shift, which="LM", v0=start)
+    try:
+        factors = splu(stiffness - shift * mass)
+    except RuntimeError:
+        raise SingularError from None
+    inverse = LinearOperator(mass.shape, factors.solve, dtype=float)
+    _, shapes = eigsh(stiffness, count, mass, sigma=shift, which="LM", v0=start, OPinv=inverse)
     squares = np.einsum("nj,nj->j", shapes, stiffness @ shapes)
     order = np.argsort(squares)
     return squares[order], shapes[:, order]

@@ -18,7 +18,7 @@ from scipy.sparse.linalg import splu
 from symbolic.arrays import Array, Complex
 from symbolic.structures.damping import ModalDamping
 from symbolic.structures.matrices import DENSE, Matrices, Matrix, dense, modes, sparse
-from symbolic.structures.rounding import hidden
+from symbolic.structures.rounding import LEFT, hidden
 
 MODES = 200
 """How many modes of a structure of more than DENSE degrees of freedom are kept by default."""
@@ -153,6 +153,15 @@ def modal_form(
     return replace(_coupled(name, matrices, dense(own)), own=damping.none)
 
 
+def refuse_inexact(name: str, form: ModalForm, freedoms: Sequence[int]) -> None:
+    """Refuse modes that miss more than `LEFT` of a structure's static flexibility. Raises ValueError."""
+    if (error := form.error(freedoms)) > LEFT:
+        raise ValueError(
+            f"the modes of structure {name!r} miss its static flexibility by {100 * error:.2g} %, where "
+            f"{100 * LEFT:g} % is taken: rounding hides it; take a coarser mesh"
+        )
+
+
 def stiffened(matrices: Matrices, held: Mapping[int, float]) -> Matrices:
     """Return matrices with stiffnesses (N/m) added at some degrees of freedom."""
     added = np.zeros(matrices.size)
@@ -272,8 +281,8 @@ def _loose(name: str, kind: str, matrices: Matrices, shapes: Array) -> LooseErro
     shown = moved if len(moved) <= 6 else [*moved[:6], f"{len(moved) - 6} more"]
     return LooseError(
         f"structure {name!r} has {kind} that forces at its places do not hold, of degrees of freedom "
-        f"{', '.join(shown)}; add a "
-        f"stiffness there to K, take these out of its matrices, or compile it with condense=False"
+        f"{', '.join(shown)}; add a stiffness there to K, take these out of its matrices, or compile it with "
+        f"condense=False"
     )
 
 

@@ -9,13 +9,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from symbolic.arrays import Array
-
-sparse: Any = scipy.sparse
-"""Untyped: its stubs tell kinds apart that are one here."""
 
 LEFT = 1e-2
 """Largest relative error of omega^2, by rounding of K, of a mode that is told from a rigid-body mode: less
@@ -31,7 +27,7 @@ def uncertainty(stiffness: Any, shapes: Array) -> Array:
 
     Parameters
     ----------
-    stiffness : array or scipy.sparse, shape (n, n)
+    stiffness : array or sparse array, shape (n, n)
         K in N/m.
     shapes : ndarray, shape (n, J)
         Mode shapes, phi' M phi = 1.
@@ -41,9 +37,8 @@ def uncertainty(stiffness: Any, shapes: Array) -> Array:
     ndarray, shape (J,)
         In rad^2/s^2.
     """
-    squared = stiffness.multiply(stiffness) if sparse.issparse(stiffness) else stiffness * stiffness
     moved = shapes**2
-    variance = np.maximum(np.einsum("nj,nj->j", moved, squared @ moved), 0.0)
+    variance = np.einsum("nj,nj->j", moved, (stiffness * stiffness) @ moved)
     return np.asarray(np.finfo(float).eps * np.sqrt(variance))
 
 
@@ -60,6 +55,6 @@ def hidden(stiffness: Any, squares: Array, shapes: Array) -> NDArray[np.bool_]:
     Returns
     -------
     ndarray of bool, shape (J,)
-        Whether omega^2 is less than 1 / `LEFT` of its uncertainty.
+        Whether omega^2 is less than its uncertainty over `LEFT`.
     """
     return np.asarray(np.abs(squares) * LEFT <= uncertainty(stiffness, shapes))

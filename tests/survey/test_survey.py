@@ -45,6 +45,8 @@ def test_branch_that_comes_back_at_another_orbit() -> None:
     assert BACK in found.told
     assert (found.fate, found.retraced) == ("to the end", False)
     assert replace(found, retraced=True).fate == "other"
+    for reason, fate in (("UNBOUNDED", "to the end"), ("VANISHED", "to the end"), ("SMALL_STEP", "other")):
+        assert replace(found, reason=reason).fate == fate
 
 
 def test_page_counts() -> None:

@@ -126,3 +126,30 @@ def test_judge_looks_closer_before_it_condemns() -> None:
     scales = np.array([system.states[0].scale])
     assert judged(drawn, scales, point, 1e-6).multipliers < 1e-5
     assert _compared(drawn, scales, point, 100, 1e-6).multipliers > 1e-3
+
+
+def test_judge_takes_smaller_differences_beside_a_grazing() -> None:
+    """Assert that multipliers beside it are known to 1e-3 with them, and only to 1e-2 without."""
+    drawn = machine("rubs", 14)
+    system = sym.compile(drawn.model)
+    branch = per.trace(system, drawn.parameter, (drawn.bounds[0], 62.4), start=drawn.bounds[0], tol=1e-6)
+    (*_, grazing) = branch.labelled(per.Label.GRAZING)
+    point = branch.points[branch.points.index(grazing) + 1]
+    assert 0 < point.parameter - grazing.parameter < 1e-4
+    scales = np.array([state.scale for state in system.states])[::2]
+    assert _compared(drawn, scales, point, 1000, 1e-6).multipliers > 1e-2
+    found = judged(drawn, scales, point, 1e-6)
+    assert found.multipliers < 1e-3 and found.wrong(point, 1e-6) == ""
+
+
+def test_judge_knows_a_state_to_its_own_digits() -> None:
+    """Assert that a preloaded bearing, which moves by 1e-13 m, is judged, and condemned where it is off."""
+    drawn = machine("roller bearings", 7)
+    system = sym.compile(drawn.model)
+    few = per.ArclengthControl(max_points=1)
+    point = per.trace(system, drawn.parameter, drawn.bounds, start=drawn.bounds[0], control=few)[0]
+    scales = np.array([state.scale for state in system.states])[::2]
+    assert point.orbit.span() < 1e-6 < 1.0 < point.orbit.nodes[0, 0]
+    assert judged(drawn, scales, point, 1e-6).wrong(point, 1e-6) == ""
+    moved = replace(point.orbit, nodes=point.orbit.nodes + [1e-8, 0.0, 0.0, 0.0])
+    assert judged(drawn, scales, replace(point, orbit=moved), 1e-6).wrong(point, 1e-6).startswith("orbit ")

@@ -160,41 +160,38 @@ class WholeRotor(Rotor):
         super().__init__(0.0)
         self.pitch = pitch
 
-    def _whole(self, lateral: Any, rest: float) -> Any:
-        """A matrix of nodes with x, y, z, alpha, beta, theta from one with x, y, alpha, beta."""
-        count = len(lateral) // 4
-        bending = [6 * node + k for node in range(count) for k in (0, 1, 3, 4)]
+    def _whole(self, bending: Any, along: Any) -> Any:
+        """A matrix of all six freedoms of nodes from that of bending and that of z, or theta."""
+        count = len(along)
         found = np.zeros((6 * count, 6 * count))
-        found[np.ix_(bending, bending)] = lateral
-        for k in (2, 5):
-            each = np.arange(k, 6 * count, 6)
-            chain = (
-                np.eye(count)
-                if rest > 0
-                else 2e6 * np.eye(count) - 1e6 * (np.eye(count, k=1) + np.eye(count, k=-1))
-            )
-            if rest == 0:
-                chain[0, 0] = chain[-1, -1] = 1e6
-            found[np.ix_(each, each)] = chain * (rest or 1.0)
+        for kinds, each in (((0, 1, 3, 4), bending), ((2,), along), ((5,), along)):
+            own = [6 * node + kind for node in range(count) for kind in kinds]
+            found[np.ix_(own, own)] = each
         return found
+
+    def _chain(self, size: float) -> Any:
+        """Springs from node to node, held nowhere."""
+        count = len(self.structure.M) // 4
+        ends = np.r_[1.0, np.full(count - 2, 2.0), 1.0]
+        return size * (np.diag(ends) - np.eye(count, k=1) - np.eye(count, k=-1))
 
     def M(self) -> Any:
         """Mass."""
-        return self._whole(self.structure.M, 3.0)
+        return self._whole(self.structure.M, 3.0 * np.eye(len(self.structure.M) // 4))
 
     def C(self, frequency: float) -> Any:
         """Damping, none but in bending."""
-        found = self._whole(self.structure.C, 1e-300)
+        found = self._whole(self.structure.C, self._chain(0.0))
         found[0, 2] = self.pitch
         return found
 
     def K(self, frequency: float) -> Any:
         """Stiffness."""
-        return self._whole(self.structure.K, 0.0)
+        return self._whole(self.structure.K, self._chain(1e6))
 
     def G(self) -> Any:
         """Gyroscopic matrix."""
-        return self._whole(self.structure.G, 1e-300)
+        return self._whole(self.structure.G, self._chain(0.0))
 
 
 def test_rotor_of_ross_with_axial_motion_and_torsion() -> None:
