@@ -40,6 +40,7 @@ class Label(str):
     GRAZING: ClassVar[Label]
     USER: ClassVar[Label]
     FAILED: ClassVar[Label]
+    PEAK: ClassVar[Label]
     CUSP: ClassVar[Label]
     RESONANCE_1: ClassVar[Label]
     RESONANCE_2: ClassVar[Label]
@@ -110,6 +111,7 @@ Label.HOPF = Label.register("HB", critical=True)
 Label.GRAZING = Label.register("GR")
 Label.USER = Label.register("UZ")
 Label.FAILED = Label.register("MX")
+Label.PEAK = Label.register("PK")
 Label.CUSP = Label.register("CP")
 Label.RESONANCE_1 = Label.register("R1")
 Label.RESONANCE_2 = Label.register("R2")

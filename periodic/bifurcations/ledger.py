@@ -25,7 +25,7 @@ from periodic.system.precision import SMALLEST
 CROSSING = {Label.FOLD: 1, Label.DOUBLING: 1, Label.BRANCH: 1, Label.TORUS: 2, Label.HOPF: 2}
 """How many multipliers pass the unit circle, or eigenvalues the imaginary axis, at special points."""
 
-PLAIN = (Label.NONE, Label.USER, Label.END, Label.FAILED)
+PLAIN = (Label.NONE, Label.USER, Label.PEAK, Label.END, Label.FAILED)
 """Labels that imply nothing of stability: no multiplier passes there. See `Entry.crossing` for the others."""
 
 BESIDE_END = 1e-3

@@ -68,7 +68,16 @@ def special_points(solver: Solver, base: Solution, new: Solution, ds: float, sou
         met = _where(within, new, ds, test, sought.course)
         found = found + [point for point in met if not any(is_one(point, fold, ds) for fold in named_folds)]
     found = _in_order(found + _at_values(within, pieces, sought))
-    found = _in_order(found + _behind_saddle(within, new, ds, found))
+    return _to_end(_in_order(found + _behind_saddle(within, new, ds, found)))
+
+
+def with_peaks(found: list[Found], peaks: list[Found]) -> list[Found]:
+    """Return special points and peaks in order along the branch, up to one at which it ends."""
+    return _to_end(_in_order([*found, *peaks]))
+
+
+def _to_end(found: list[Found]) -> list[Found]:
+    """Those up to the first at which the branch ends."""
     final = [k for k, item in enumerate(found) if item.label is Label.END or item.shrunk]
     return found[: final[0] + 1] if final else found
 
@@ -207,12 +216,43 @@ def _located(within: WithinStep, span: tuple[float, float], ds: float, test: Tes
         return []
     if not crossed and shrinks(solution, *ends):
         return [Found(test.label, distance, solution)]  # an orbit of no size has no relative error
+    return [refined_place(solver, distance, solution, ds, test)]
+
+
+def refined_place(
+    solver: Solver, distance: float, solution: Solution, ds: float, test: TestFunction
+) -> Found:
+    """Return the point of a test function's zero on a mesh that is right for it.
+
+    Parameters
+    ----------
+    solver : Solver
+        The problem and how it is solved.
+    distance : float
+        Of the zero from the base of its step.
+    solution : Solution
+        The zero, on the mesh of the step.
+    ds : float
+        The length of the step.
+    test : TestFunction
+        The function.
+
+    Returns
+    -------
+    Found
+        The point; the zero is looked for again where the mesh is another one.
+
+    Raises
+    ------
+    RejectedError
+        Where it is not found again, or does not meet the tolerance.
+    """
     better = _accepted(solver, refined(solver, solution))
     if better is not solution:
         if not solver.alike(solution, better):
             raise RejectedError("on another mesh a special point has other events")
         solution = _again(solver, better, ds, test)
-    return [Found(test.label, distance, solution, test.name)]
+    return Found(test.label, distance, solution, test.name)
 
 
 def _root(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any, TypeVar
 
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate
@@ -15,6 +16,8 @@ from periodic.correction.refinement import Refinement
 from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
 from periodic.stability.multipliers import Spectrum
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -75,7 +78,7 @@ class Solution:
         """The continuation parameter (SI)."""
         return self.problem.value(self.orbit)
 
-    def once(self, function: Callable[[Solution], float]) -> float:
+    def once(self, function: Callable[[Solution], T]) -> T:
         """Return a function of the solution, computed when it is first asked for.
 
         Parameters
@@ -85,15 +88,16 @@ class Solution:
 
         Returns
         -------
-        float
+        object
             Its value.
         """
         if function not in self._values:
             self._values[function] = function(self)
-        return self._values[function]
+        found: T = self._values[function]
+        return found
 
     @cached_property
-    def _values(self) -> dict[Callable[[Solution], float], float]:
+    def _values(self) -> dict[Callable[[Solution], Any], Any]:
         return {}
 
     @cached_property

@@ -249,12 +249,18 @@ def length_metric(orbit: Orbit, phases: Array) -> Array:
     found = np.zeros(len(orbit.mesh.events))
     if len(orbit.mesh.exact_ends) == 0:
         return found
-    lengths = orbit.mesh.segment_lengths(orbit.phases)
-    for i, j in orbit.mesh.excursions:
-        length = float(sum(lengths[m % len(lengths)] for m in range(i, j if i < j else j + len(lengths))))
+    lengths = excursion_lengths(orbit)
+    for (i, j), length in zip(orbit.mesh.excursions, lengths, strict=True):
         weight = (E_FOLD / length) ** 2 / (1 + (length / BRIEF) ** 4)
         found[[i, j]] += weight * (phases[j] - phases[i]) * np.array([-1.0, 1.0])
     return found
+
+
+def excursion_lengths(orbit: Orbit) -> Array:
+    """Return the lengths of excursions (rad), in the order of `mesh.excursions`."""
+    lengths = orbit.mesh.segment_lengths(orbit.phases)
+    parts = [range(i, j if i < j else j + len(lengths)) for i, j in orbit.mesh.excursions]
+    return np.array([sum(lengths[m % len(lengths)] for m in part) for part in parts], dtype=float)
 
 
 def node_phase_gradient(orbit: Orbit) -> Array:

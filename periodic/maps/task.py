@@ -218,7 +218,7 @@ class Task:
             determined=self.determined,
             method=self.method,
             control=self.control,
-            watch=self.watch,
+            watch=self.watch or Watch(peaks={}),
         )
 
     def described(self) -> dict[str, Any]:

@@ -14,8 +14,10 @@ from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, Gap, counts, gaps
 from periodic.checks import one_of
 from periodic.correction.error import shortfall
+from periodic.orbit.layout import Layout
 from periodic.orbit.scheme import Array
 from periodic.results import frames, netcdf
+from periodic.results.betweenpoints import PER_SEGMENT, curve, slopes_of, smooth
 from periodic.results.branchoverview import branch_html
 from periodic.results.point import Point
 from periodic.results.record import Record
@@ -28,6 +30,16 @@ if TYPE_CHECKING:
 
 INTRINSIC = ("PhaseCondition", "Conservative")
 """Conditions that every orbit meets. With others a branch is a curve, whose folds have no label."""
+
+
+PEAK_OF = "peak of "
+"""How the names of the peaks begin that a branch has by default."""
+
+
+def usual_peaks(layout: Layout) -> dict[str, str]:
+    """Return the outputs whose peak to peak is watched by default, by the names of their peaks."""
+    states = {state.name for state in layout.states}
+    return {PEAK_OF + output.name: output.name for output in layout.outputs if output.name in states}
 
 
 class Branch(Record):
@@ -94,8 +106,8 @@ class Branch(Record):
 
     @property
     def special_points(self) -> tuple[Point, ...]:
-        """The labelled points, in order along the branch."""
-        return tuple(p for p in self.points if p.label is not Label.NONE)
+        """The labelled points, in order along the branch, without peaks (see `peaks`)."""
+        return tuple(p for p in self.points if p.label not in (Label.NONE, Label.PEAK))
 
     def labelled(self, label: str) -> tuple[Point, ...]:
         """Return the points with a label, or of one of the user's events or peaks by its name.
@@ -115,7 +127,7 @@ class Branch(Record):
         ValueError
             For a text that is neither; it says which there are.
         """
-        asked = [name for group in ("events", "peaks") for name in self.made.get(group, {})]
+        asked = [*self.made.get("events", {}), *self._peak_names]
         events = dict.fromkeys((*asked, *(p.event for p in self.points if p.event)))
         known = [*(known.value for known in Label.known()), *events]
         if label and label not in known:
@@ -124,8 +136,15 @@ class Branch(Record):
 
     @property
     def peaks(self) -> dict[str, tuple[Point, ...]]:
-        """The points at which each peak that was asked for is greatest or least along the branch, by name."""
-        return {name: self.labelled(name) for name in self.made.get("peaks", {})}
+        """The points at which each measure is greatest or least along the branch, by the name of the peak.
+
+        By default the peak to peak of each coordinate x, as "peak of x"; else those of `Watch(peaks=)`.
+        """
+        return {name: self.labelled(name) for name in self._peak_names}
+
+    @property
+    def _peak_names(self) -> tuple[str, ...]:
+        return tuple(self.made.get("peaks", usual_peaks(self.layout)))
 
     @property
     def _entries(self) -> list[Entry]:
@@ -227,6 +246,34 @@ class Branch(Record):
         """
         one_of("column", name, frames.units(self))
         return np.array([frames.row(self, p)[name] for p in self.points])
+
+    def curve(self, name: str, each: int = PER_SEGMENT) -> tuple[Array, Array]:
+        """Return the curve of a column over the parameter, between the points too.
+
+        Least and greatest values and peak to peaks of outputs are cubics from the tangents; the steps of a
+        branch are so long that the peak to peaks that it watches are right to 1 % of their range, and mostly
+        to far less. Other columns are monotone between the points.
+
+        Parameters
+        ----------
+        name : str
+            The column: "x p-p", "x min", "x max"; or another of `to_pandas`.
+        each : int
+            Values from each point, which is the first of them, to the next.
+
+        Returns
+        -------
+        tuple of Array
+            The parameter and the column (SI), shape ((points - 1) each + 1,); each empty of no points.
+
+        Raises
+        ------
+        ValueError
+            For a name that is none; it says which there are.
+        """
+        heights, values = self.column(name), self.values
+        slopes = slopes_of(self.points, name)
+        return smooth(values, heights, each) if slopes is None else curve(values, heights, *slopes, each)
 
     def to_xarray(self) -> xr.Dataset:
         """Return the branch as a Dataset with one entry a point, units in the variables' attributes.

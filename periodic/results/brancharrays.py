@@ -32,6 +32,9 @@ DAMAGE = (
 )
 """What reading numbers that make no sense raises."""
 
+BY_OUTPUT = ("minimum", "maximum", "minimum_slope", "maximum_slope")
+"""Numbers of a point for each output."""
+
 GROUPS = ("states", "algebraics", "outputs", "parameters")
 
 TANGENT = tuple(field.name for field in fields(Increment))
@@ -58,8 +61,14 @@ def tables(record: Record) -> Tables:
     found = multipliers_of(points, len(layout.states))
     kind = "state" if found.shape[1] == len(layout.states) else "multiplier"
     wide = {
-        "minimum": ("output", [[p.minimum[o] for o in outputs] for p in points], len(outputs)),
-        "maximum": ("output", [[p.maximum[o] for o in outputs] for p in points], len(outputs)),
+        **{
+            name: (
+                "output",
+                [[getattr(p, name).get(o, np.nan) for o in outputs] for p in points],
+                len(outputs),
+            )
+            for name in BY_OUTPUT
+        },
         "columns": ("column", [[*p.columns.values()] for p in points], len(columns)),
         "multiplier_real": (kind, found.real, found.shape[1]),
         "multiplier_imag": (kind, found.imag, found.shape[1]),
@@ -265,4 +274,6 @@ def _point(arrays: Arrays, i: int, orbit: Orbit, labels: dict[str, Label], colum
         marginal=bool(arrays["marginal"][i]),
         event=str(arrays["event"][i]),
         columns=by_name(columns, "columns"),
+        minimum_slope=by_name(names, "minimum_slope") if "minimum_slope" in arrays else {},
+        maximum_slope=by_name(names, "maximum_slope") if "maximum_slope" in arrays else {},
     )

@@ -36,7 +36,7 @@ def branch_html(record: Record, stable_between: np.ndarray, said: tuple[str, ...
     str
         A table of the special points and a picture of the first output.
     """
-    special = [p for p in record.points if p.label is not Label.NONE]
+    special = [p for p in record.points if p.label not in (Label.NONE, Label.PEAK)]
     rows = [_row(record, point) for point in special[:MOST_POINTS]]
     more = [f"and {len(special) - MOST_POINTS} special points more"] if len(special) > MOST_POINTS else []
     notes = "".join(map(paragraph, (*more, *said)))
@@ -74,7 +74,7 @@ def _picture(record: Record, stable_between: np.ndarray) -> str:
     marks = [
         Mark(x[k], y[k], p.event or p.label.value)
         for k, p in enumerate(points)
-        if p.label not in (Label.NONE, Label.END)
+        if p.label not in (Label.NONE, Label.PEAK, Label.END)
     ]
     headings = _headings(record)
     return sketch(lines or [Line(x, y)], marks, headings[1], headings[2])

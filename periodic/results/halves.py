@@ -86,4 +86,14 @@ def reversed_run(points: Sequence[Point]) -> list[Point]:
     list of Point
         With the opposite slopes.
     """
-    return [replace(point, slope=-point.slope) for point in reversed(points)]
+    return [_turned(point) for point in reversed(points)]
+
+
+def _turned(point: Point) -> Point:
+    """A point of a branch that goes the other way."""
+    least, most = point.minimum_slope, point.maximum_slope
+    return replace(point, slope=-point.slope, minimum_slope=_opposite(least), maximum_slope=_opposite(most))
+
+
+def _opposite(slopes: dict[str, float]) -> dict[str, float]:
+    return {output: -slope for output, slope in slopes.items()}

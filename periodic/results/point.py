@@ -13,10 +13,12 @@ from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, growth, noise
 from periodic.checks import ByName, one_of
 from periodic.correction.error import AT_WORST, ErrorEstimate
+from periodic.correction.measured import measured
 from periodic.correction.solution import Solution
 from periodic.display.htmltables import paragraph
 from periodic.orbit.extrema import Extremes, apart, extrema
 from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
 from periodic.stability.multipliers import ERRORS_FROM_ONE, LOST_FLOW, ROUNDED_ONE, without_trivial
 from periodic.system.precision import EPSILON
 
@@ -64,6 +66,9 @@ class Point:
         The user's name of the event met there.
     columns : dict
         Functionals asked for, by name.
+    minimum_slope, maximum_slope : dict
+        d minimum / d arclength and d maximum / d arclength of each output (SI), by name; empty where a file
+        is older than they are.
     """
 
     orbit: Orbit
@@ -81,10 +86,13 @@ class Point:
     marginal: bool = False
     event: str = ""
     columns: dict[str, float] = field(default_factory=dict)
+    minimum_slope: dict[str, float] = field(default_factory=dict)
+    maximum_slope: dict[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name, what in (("minimum", "output"), ("maximum", "output"), ("columns", "column")):
-            object.__setattr__(self, name, ByName(what, getattr(self, name)))
+        for name in ("minimum", "maximum", "minimum_slope", "maximum_slope"):
+            object.__setattr__(self, name, ByName("output", getattr(self, name)))
+        object.__setattr__(self, "columns", ByName("column", self.columns))
 
     def __repr__(self) -> str:
         kind = " ".join(filter(None, [self.label.value, self.event, "stable" if self.stable else "unstable"]))
@@ -183,8 +191,13 @@ def _distance(multipliers: NDArray[np.complex128], count: int) -> float | None:
 def describe(solution: Solution, label: Label, event: str, columns: dict[str, float]) -> Point:
     """Return what is said of a solution: label, the user's name of an event, columns, and all the rest."""
     problem, orbit = solution.problem, solution.problem.expand(solution.orbit)
-    found = extrema(problem.full, orbit)
+    measures = measured(solution)
+    found = measures.extremes
     names = [output.name for output in problem.full.outputs]
+
+    def by_name(values: Array) -> dict[str, float]:
+        return dict(zip(names, map(float, values), strict=True))
+
     multipliers = solution.spectrum.multipliers
     order = -multipliers.real if orbit.equilibrium else -np.abs(multipliers)
     return Point(
@@ -192,8 +205,8 @@ def describe(solution: Solution, label: Label, event: str, columns: dict[str, fl
         parameter=solution.value,
         label=label,
         multipliers=multipliers[np.argsort(order, kind="stable")],
-        minimum=dict(zip(names, map(float, found.minimum), strict=True)),
-        maximum=dict(zip(names, map(float, found.maximum), strict=True)),
+        minimum=by_name(found.minimum),
+        maximum=by_name(found.maximum),
         error=_with_peaks(solution, found),
         residual=solution.correction.residual,
         iterations=solution.correction.iterations,
@@ -203,6 +216,8 @@ def describe(solution: Solution, label: Label, event: str, columns: dict[str, fl
         marginal=marginal(problem),
         event=event,
         columns=columns,
+        minimum_slope=by_name(measures.minimum_slope),
+        maximum_slope=by_name(measures.maximum_slope),
     )
 
 

@@ -18,7 +18,7 @@ from periodic.correction.error import unit_of
 from periodic.correction.identity import closes, repeats, same
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
-from periodic.orbit.orbit import Orbit
+from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, describe
 from periodic.results.stop import Reason, Stop
@@ -30,6 +30,7 @@ from periodic.tracing.state import State
 from periodic.tracing.steps.patternchange import Reached, crossed
 from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.steps.taken import NEARLY, Refused, Step, Steps
+from periodic.tracing.steps.watchedswings import WatchedSwings
 from periodic.tracing.watch import Watch
 
 
@@ -219,9 +220,10 @@ class Continuation:
         """Take steps from a base, which is the last solution on a mesh for the next one."""
         assert self.state is not None
         while self.state.steps + 1 < self.control.max_points:
-            step = self._steps.take(self.state, base, worded=True)
+            behind = self.collected
+            step = self._steps.take(self.state, base, behind, worded=True)
             if isinstance(step, Refused) and (eased := self._steps.eased(base)) is not None:
-                step = self._steps.take(self.state, eased, worded=True)
+                step = self._steps.take(self.state, eased, behind, worded=True)
             if isinstance(step, Refused) and self._reread(self.state.last):
                 yield self.collected[-1]
                 if self.stop is not None:
@@ -229,7 +231,7 @@ class Continuation:
                 base = self._prepared(self.state.last)
                 continue
             if isinstance(step, Refused) and step.unread:
-                step = self._steps.take(self.state, base, worded=False)
+                step = self._steps.take(self.state, base, behind, worded=False)
             if isinstance(step, Refused):
                 self.stop = step.stop
                 yield self._emitted(base, Label.FAILED)
@@ -273,7 +275,7 @@ class Continuation:
                 if own
                 else Stop.bound(bounds, special.solution.value, state.begun.value)
             )
-        name = special.name if label is Label.USER and own else label.value
+        name = special.name if label in (Label.USER, Label.PEAK) and own else label.value
         if special.shrunk:
             self.stop = Stop.after(Reason.EQUILIBRIUM, state.steps + 1)
         self._counted(name)
@@ -389,4 +391,8 @@ class Continuation:
 
     @cached_property
     def _steps(self) -> Steps:
-        return Steps(self.solver, self.control, self.watch.tests(), self.user)
+        watch, solver = self.watch, self.solver
+        tests = {} if self.nested else watch.swings(solver.problem)
+        least = {q.name: LEAST_SPAN * q.scale for q in solver.problem.full.outputs}
+        swings = WatchedSwings(tests, solver.tolerance.orbit, least)
+        return Steps(solver, self.control, watch.tests(), self.user, swings)

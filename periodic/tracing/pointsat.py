@@ -17,6 +17,7 @@ from periodic.results.point import Point
 from periodic.results.stop import Reason
 from periodic.system import System
 from periodic.tracing.trace import trace
+from periodic.tracing.watch import Watch
 
 
 def points_at(
@@ -63,7 +64,10 @@ def points_at(
     low, high = branch.values.min(), branch.values.max()
     if not low <= wanted <= high:
         raise ValueError(f"value is {wanted:g}; the branch has {branch.parameter} from {low:g} to {high:g}")
-    traced = partial(trace, system, branch.parameter, tol=tol, determined=determined, method=method)
+    plain = Watch(peaks={})
+    traced = partial(
+        trace, system, branch.parameter, tol=tol, determined=determined, method=method, watch=plain
+    )
     beside = itertools.pairwise([*branch.points, branch[-1]])
     each = (_between(traced, pair, wanted) for pair in beside)
     return tuple(point for point in each if point is not None)

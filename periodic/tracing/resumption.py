@@ -56,7 +56,7 @@ def made_with(setup: Setup) -> dict[str, Any]:
         "values": held,
         "determined": described(problem.determined),
         **{name: described(getattr(method.watch, name)) for name in WATCHED},
-        **({"peaks": described(method.watch.peaks)} if method.watch.peaks else {}),  # older files have none
+        **({} if method.watch.peaks is None else {"peaks": described(method.watch.peaks)}),  # as older files
         FROM_REST: setup.search,
     }
 

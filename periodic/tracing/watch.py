@@ -9,13 +9,18 @@ from pathlib import Path
 
 import numpy as np
 
+from periodic.bifurcations.codimension2 import codim2
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.checks import named
+from periodic.conditions.extremes import PeakToPeak
 from periodic.conditions.functionals import Functional, Value
 from periodic.conditions.levels import Level
+from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution
+from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import Orbit
+from periodic.results.branch import PEAK_OF, usual_peaks
 from periodic.results.point import Point
 from periodic.system import System, index_of
 from periodic.tracing.steps.leveltest import called, finite, level_test
@@ -32,9 +37,11 @@ class Watch:
         Functionals of the orbit kept at each point, by the names of their columns.
     events : mapping of str to Level
         Levels of functionals, by name; where one is passed the branch gets a point (UZ).
-    peaks : mapping of str to functional
+    peaks : mapping of str to functional, optional
         Functionals, by name, as {"peak of x": PeakToPeak("x")}; where one is stationary along the branch, as
-        at a resonance, the branch gets a point (UZ), however long its steps are.
+        at a resonance, the branch gets a point (PK), however long its steps are. By default the peak to peak
+        of each coordinate; {} for none. Steps are so long that the curves of peak to peaks between the points
+        are right to 1 % of their range.
     limits : mapping of str to (float, float)
         Ranges of further parameters (SI) that end the branch.
     stop : mapping of str to int
@@ -55,7 +62,7 @@ class Watch:
 
     columns: Mapping[str, Functional] = field(default_factory=dict)
     events: Mapping[str, Level] = field(default_factory=dict)
-    peaks: Mapping[str, Functional] = field(default_factory=dict)
+    peaks: Mapping[str, Functional] | None = None
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     stop: Mapping[str, int] = field(default_factory=dict)
     special: tuple[TestFunction, ...] = ()
@@ -65,15 +72,15 @@ class Watch:
     def __post_init__(self) -> None:
         kinds = {"columns": "functionals", "events": "levels", "peaks": "functionals", "limits": "ranges"}
         for name, what in {**kinds, "stop": "counts"}.items():
-            named(name, getattr(self, name), what)
+            named(name, self.asked if name == "peaks" else getattr(self, name), what)
         known = [label.value for label in Label.known()]
         for what, name, functional in (
             *(("column", *each) for each in self.columns.items()),
-            *(("peak", *each) for each in self.peaks.items()),
+            *(("peak", *each) for each in self.asked.items()),
         ):
             if isinstance(functional, type) or not callable(functional):
                 raise ValueError(f"{what} {name} is {functional!r}; it must be a functional of an orbit")
-        for name in self.peaks:
+        for name in self.asked:
             if name in (*known, *self.events):
                 raise ValueError(f"peaks has {name!r}, which is a label or an event; it must be another name")
         for name, event in self.events.items():
@@ -82,8 +89,8 @@ class Watch:
             if name in known:
                 raise ValueError(f"events has {name!r}, which is a label; it must be another name")
         for name, count in self.stop.items():
-            if name not in (*known, *self.events, *self.peaks):
-                among = ", ".join((*known, *self.events, *self.peaks))
+            if name not in (*known, *self.events, *self.asked) and not name.startswith(PEAK_OF):
+                among = ", ".join((*known, *self.events, *self.asked))
                 raise ValueError(f"stop has {name!r}; it must name a label or an event: {among}")
             if isinstance(count, bool) or not (isinstance(count, int) and count >= 1):
                 raise ValueError(f"stop of {name} is {count!r}; it must be a whole number of at least 1")
@@ -104,6 +111,29 @@ class Watch:
         if self.journal is not None and not (isinstance(self.journal, str | Path) and str(self.journal)):
             raise ValueError(f"journal is {self.journal!r}; it must be the name of a file")
 
+    @property
+    def asked(self) -> Mapping[str, Functional]:
+        """The peaks that were asked for."""
+        return {} if self.peaks is None else self.peaks
+
+    def swings(self, problem: Problem) -> dict[str, TestFunction]:
+        """Return the peak to peaks that are watched: those asked for, by default those of all coordinates.
+
+        Parameters
+        ----------
+        problem : Problem
+            What is traced; of curves of special points none are watched unless asked for.
+
+        Returns
+        -------
+        dict of str to TestFunction
+            By output, that of its stationary points.
+        """
+        asked = {n: f.output for n, f in self.asked.items() if isinstance(f, PeakToPeak)}
+        if self.peaks is None and codim2.picked(problem) is None:
+            asked = usual_peaks(layout_of(problem.full))
+        return {output: _checked(stationary_test(PeakToPeak(output), n)) for n, output in asked.items()}
+
     def tests(self) -> tuple[TestFunction, ...]:
         """Return the test functions of further special points, of events, peaks and limits.
 
@@ -120,7 +150,11 @@ class Watch:
             for name, ends in self.limits.items()
             for side, word, value in zip((-1, 1), ("lower", "upper"), ends, strict=True)
         ]
-        peaks = [_checked(stationary_test(functional, n)) for n, functional in self.peaks.items()]
+        peaks = [
+            _checked(stationary_test(functional, n))
+            for n, functional in self.asked.items()
+            if not isinstance(functional, PeakToPeak)
+        ]
         return (*map(_checked, self.special), *events, *peaks, *limits)
 
     def measured(self, system: System, orbit: Orbit) -> dict[str, float]:

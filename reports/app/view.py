@@ -42,13 +42,15 @@ class View:
 
     `unit` is the SI value of one shown unit of the continuation parameter, its column the first. `columns`
     go to the CSV file; those with a heading are told of special points too. `height` is what the picture
-    plots, `settled` the same of a motion settled in time. Outputs in `micro` are read in micrometres.
+    plots, the branch's column `drawn` in units of so much; `settled` the same of a motion settled in time.
+    Outputs in `micro` are read in micrometres.
     """
 
     parameter: str
     unit: float
     columns: tuple[Column, ...]
     height: Column
+    drawn: tuple[str, float]
     settled: Callable[[Settled], float]
     axes: tuple[str, str]
     unit_name: str
@@ -130,6 +132,7 @@ def _model(scene: ModelScene) -> View:
             ERROR,
         ),
         height=swings[0],
+        drawn=(f"{first.name} p-p", 1.0),
         settled=lambda motion: motion.maximum - motion.minimum,
         axes=(heading, _with_unit(f"{first.name} peak to peak", first.unit)),
         unit_name=continued.unit,
@@ -186,6 +189,7 @@ DISC = View(
         ERROR,
     ),
     height=SWING,
+    drawn=("x p-p", MICRO),
     settled=lambda motion: (motion.maximum - motion.minimum) / MICRO,
     axes=("speed (rev/min)", "x peak to peak (µm)"),
     unit_name="rev/min",
@@ -204,6 +208,7 @@ OSCILLATOR = View(
         ERROR,
     ),
     height=LARGEST,
+    drawn=("x max", 1.0),
     settled=lambda motion: motion.maximum,
     axes=("frequency (rad/s)", "largest x (m)"),
     unit_name="rad/s",

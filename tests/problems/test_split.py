@@ -91,8 +91,14 @@ def test_results_are_of_all_states() -> None:
     assert ours.columns == pytest.approx(full.columns, rel=1e-7)
     assert np.allclose(ours.orbit["q7'"](1.0), full.orbit["q7'"](1.0), rtol=0, atol=1e-7)
     assert np.allclose(*(np.sort_complex(p.multipliers) for p in (ours, full)), rtol=0, atol=1e-7)
-    events = [[p.parameter for p in whole(c).points if p.event] for c in (True, False)]
+    events = [[p.parameter for p in whole(c).labelled("far")] for c in (True, False)]
     assert len(events[0]) == 1
+    ours, full = (
+        {n: [p.parameter for p in each] for n, each in whole(c).peaks.items()} for c in (True, False)
+    )
+    assert [len(each) for each in ours.values()] == [0, 2, 2, 2, 2, 2, 2, 2, 4, 4]
+    for name, places in ours.items():
+        assert places == pytest.approx(full[name], rel=1e-6)
     assert events[0] == pytest.approx(events[1], rel=1e-8)
     assert whole(True).made["method"]["is"] == "CondensedCollocation"
 

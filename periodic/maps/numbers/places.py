@@ -52,7 +52,7 @@ class Places:
 
     def units(self, task: Task) -> dict[str, str]:
         """Return the unit of the values. Raises ValueError for a label that branches do not have."""
-        own = () if task.watch is None else (*task.watch.events, *task.watch.peaks)
+        own = () if task.watch is None else (*task.watch.events, *task.watch.asked)
         one_of("label", self.label, [*map(str, Label.known()), *own])
         given = self.functional
         return {"": parameter_unit(task) if given is None else unit_of(task.system, given)}

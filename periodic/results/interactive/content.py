@@ -18,6 +18,9 @@ from periodic.system import System
 SAMPLES = 128
 """Values of each signal over a period."""
 
+PIECES = 4
+"""Pieces in which curves are drawn from a point to the next."""
+
 MOST_POINTS = 600
 """Points that a page holds; special points are kept in any case."""
 
@@ -39,9 +42,11 @@ def content(branch: Branch, units: Units, system: System | None = None) -> dict[
         "pairs": signals.pairs,
         "heights": heights.described,
         "samples": SAMPLES,
+        "parts": PIECES,
         "stop": str(branch.stop),
         "border": second_of(branch) is not None,
         "points": [_said(p, across, heights) for p in points],
+        "curves": heights.curves(branch, across) if len(points) == len(branch) else None,
         "orbits": packed(orbits),
         "drawing": drawing(sketch_of(system), points, places, orbits, quantities(branch.layout), system),
     }
@@ -106,6 +111,15 @@ class Heights:
             {"name": name, "unit": unit.text, "said": name if name in plain else f"{name} peak to peak"}
             for name, unit in self._units.items()
         ]
+
+    def curves(self, branch: Branch, across: Unit) -> list[list[list[float | None]]]:
+        """Return x and y of the curve of each, PIECES values from a point to the next."""
+        found = []
+        for name, unit in self._units.items():
+            plain = name == self._second or self._still
+            x, y = branch.curve(name if plain else f"{name} p-p", PIECES)
+            found.append([[_rounded(v) for v in (x / across.size)], [_rounded(v) for v in (y / unit.size)]])
+        return found
 
     def of(self, point: Point) -> list[float | None]:
         """Return the heights of a point."""

@@ -47,11 +47,14 @@ function apart(places, x, y) {
 
 function drawBranch() {
   const x = data.points.map(p => p.at), y = heights(), q = data.heights[find("output").selectedIndex];
-  const traces = stretches().map(s => ({ x: x.slice(s.from, s.to + 1), y: y.slice(s.from, s.to + 1), mode: "lines",
-    hoverinfo: "skip", line: { color: colour("--one"), width: 2.4, shape: "spline", smoothing: 0.7, dash: s.stable ? "solid" : "dash" } }));
+  const curve = data.curves ? data.curves[find("output").selectedIndex] : [x, y], parts = data.curves ? data.parts : 1;
+  const traces = stretches().map(s => ({ x: curve[0].slice(parts * s.from, parts * s.to + 1),
+    y: curve[1].slice(parts * s.from, parts * s.to + 1), mode: "lines", hoverinfo: "skip",
+    line: { color: colour("--one"), width: 2.4, shape: data.curves ? "linear" : "spline", smoothing: 0.7, dash: s.stable ? "solid" : "dash" } }));
   traces.push({ x, y, mode: "markers", marker: { size: 14, color: "rgba(0,0,0,0)" },
     hovertemplate: "%{x:.6g}, %{y:.5g}<extra></extra>" });
-  const special = data.points.map((p, k) => k).filter(k => data.points[k].label);
+  const special = data.points.map((p, k) => k).filter(k => data.points[k].label)
+    .filter(k => !data.points[k].label.startsWith("peak of ") || data.points[k].label === "peak of " + q.name);
   traces.push({ x: special.map(k => x[k]), y: special.map(k => y[k]), mode: "markers+text",
     text: special.map(k => plain(data.points[k].label)), textposition: "top center", cliponaxis: false,
     textfont: { color: colour("--mark") }, marker: { size: 8, color: colour("--mark") }, hoverinfo: "skip" });

@@ -9,7 +9,7 @@ import numpy as np
 
 from periodic.checks import one_of
 from periodic.results import frames
-from periodic.results.branch import Branch
+from periodic.results.branch import PEAK_OF, Branch
 from periodic.results.plots.curve import draw_curve
 from periodic.results.plots.frame import dressed, fresh
 from periodic.results.plots.marks import mark
@@ -67,9 +67,25 @@ def plot(
     across = shown.unit(branch.parameter, branch.values)
     x, y = branch.values / across.size, heights / unit.size
     axes = fresh(axes)
-    draw_curve(axes, x, y, branch.stable_between, labels=(label or "stable", "unstable"))
-    mark(axes, [(p.label.value, p.event, *at) for p, *at in zip(branch, x, y, strict=True)])
+    curve = _curve(branch, name, measure)
+    between = (x, y) if curve is None else (curve[0] / across.size, curve[1] / unit.size)
+    draw_curve(axes, *between, branch.stable_between, labels=(label or "stable", "unstable"))
+    others = {PEAK_OF + output for output in outputs if output != name}
+    told = [
+        (p.label.value, p.event, *at) for p, *at in zip(branch, x, y, strict=True) if p.event not in others
+    ]
+    mark(axes, told)
     return dressed(axes, across.label(branch.parameter), unit.label(said))
+
+
+def _curve(
+    branch: Branch, name: str, measure: Callable[[Point], float] | str | None
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """The curve of what is plotted (SI); none where it is a function of a point."""
+    if measure is not None and not isinstance(measure, str):
+        return None
+    still = any(point.equilibrium for point in branch)
+    return branch.curve(measure or (name if still else f"{name} p-p"))
 
 
 def _measured(

@@ -6,13 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from periodic.system.precision import SMALLEST
+from periodic.results.betweenpoints import PER_SEGMENT, smooth
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-PER_SEGMENT = 8
-"""Straight pieces that are drawn between two computed points."""
 
 
 def draw_curve(
@@ -25,8 +22,9 @@ def draw_curve(
     labels: tuple[str, str] = ("stable", "unstable"),
     linewidth: float = 1.8,
 ) -> str | None:
-    """Draw a curve through points, one line for each run of equal stability, and return its colour.
+    """Draw a curve, one line for each run of equal stability, and return its colour.
 
+    It is given by points, or with PER_SEGMENT values from each to the next, as `Branch.curve` returns it.
     `stable` tells each segment's kind; an empty label leaves its lines out of the legend. Without a colour it
     is the next one of the axes.
     """
@@ -34,7 +32,8 @@ def draw_curve(
         return color
     from matplotlib.colors import to_hex
 
-    across, up = smooth(across, up)
+    if len(across) == len(stable) + 1:
+        across, up = smooth(across, up)
     named: set[bool] = set()
     for piece, kind in runs(stable):
         part = slice(PER_SEGMENT * piece.start, PER_SEGMENT * (piece.stop - 1) + 1)
@@ -60,21 +59,3 @@ def runs(stable: np.ndarray) -> list[tuple[slice, bool]]:
         for begin, end in zip(cuts[:-1], cuts[1:], strict=True)
         if end > begin
     ]
-
-
-def smooth(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return a curve through the points, each segment in PER_SEGMENT parts.
-
-    Monotone cubics in the chord length: they reverse in the parameter at the computed folds alone.
-    """
-    from scipy.interpolate import PchipInterpolator
-
-    spans = [max(float(np.ptp(values)), SMALLEST) for values in (x, y)]
-    chords = np.hypot(np.diff(x) / spans[0], np.diff(y) / spans[1])
-    length = np.concatenate([[0.0], np.cumsum(np.maximum(chords, 1e-9))])
-    parts = np.arange(len(x) - 1)[:, None] + np.arange(PER_SEGMENT) / PER_SEGMENT
-    where = np.interp(np.append(parts, len(x) - 1), np.arange(len(x)), length)
-    points = np.column_stack([x, y])
-    curve = PchipInterpolator(length, points)(where)
-    curve[::PER_SEGMENT] = points
-    return curve[:, 0], curve[:, 1]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from periodic.bifurcations.label import Label
+from periodic.results.branch import PEAK_OF
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -19,6 +20,7 @@ KINDS: dict[str, tuple[str, str]] = {
     "HB": ("v", "Hopf"),
     "GR": ("d", "grazing"),
     "MX": ("X", "failed"),
+    "PK": ("+", "peak or trough"),
     "CP": ("*", "cusp"),
     "R1": ("h", "resonance 1:1"),
     "R2": ("h", "resonance 1:2"),
@@ -39,7 +41,7 @@ def mark(axes: Axes, points: Iterable[tuple[str, str, float, float]]) -> None:
     """Mark special points: of each its label, the user's name of an event, and its place.
 
     Ends are not marked. Where a value was asked for ("UZ") there is a ring without a text, unless it has a
-    name.
+    name; where a measure is greatest or least ("PK") a cross, which has none by default.
     """
     from periodic.results.plots.frame import plain
     from periodic.results.plots.labels import placed
@@ -49,12 +51,12 @@ def mark(axes: Axes, points: Iterable[tuple[str, str, float, float]]) -> None:
         if label in ("", Label.END) and not event:
             continue
         sign, meaning = KINDS.get(label, ("P", event))
-        text = event or label if label in ("", Label.USER, Label.END) else label
+        text = event or label if label in ("", Label.USER, Label.END, Label.PEAK) else label
         asked = label in ("", Label.USER)
         name = plain((event or "asked for") if asked else f"{label} {meaning}".strip())
         look: dict[str, Any] = {"marker": "o", "markerfacecolor": "none"} if asked else {"marker": sign}
         axes.plot([x], [y], color="black", linestyle="None", markersize=5.0, zorder=3, **look)
         axes.get_lines()[-1].set_label("" if name in named else name)
         named.add(name)
-        if text != Label.USER:
+        if text != Label.USER and not text.startswith(PEAK_OF):
             placed(axes).add(text, (x, y))

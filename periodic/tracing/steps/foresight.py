@@ -4,11 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from periodic.correction.change import Change
 from periodic.correction.predictor import tangent
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
+from periodic.linear.unknowns import E_FOLD, excursion_lengths
 from periodic.orbit.orbit import Orbit
+
+LOOKED = 1.5 * E_FOLD
+"""Most arclength in which a tangent leads to the end of a brief excursion where the metric is that of
+the logarithm of its length: one e-fold where nothing else changes. Steps as long see the end by
+themselves."""
+
+BEYOND = 1.01
+"""Factor from the way to where a length vanishes to how far is looked."""
 
 
 @dataclass
@@ -46,6 +57,35 @@ class Foresight:
             self._asked = base, ds
             self._change.clear()
         return self._guess
+
+    def reach(self, base: Solution, ds: float) -> float:
+        """Return how far ahead changes are looked for: a step, or to where a brief excursion vanishes.
+
+        The metric of continuation counts the logarithm of its length (`periodic.linear.unknowns`), so that
+        it falls by the same factor in each step, however near the grazing is, and a tangent shorter than an
+        e-fold does not show it. What is left of the way goes as the square of the length: it is gone at once
+        where that is less than the tolerance.
+
+        Parameters
+        ----------
+        base : Solution
+            Where the step begins, with its tangent.
+        ds : float
+            Its length in arclength.
+
+        Returns
+        -------
+        float
+            A length in arclength, not less than that of the step.
+        """
+        if not base.orbit.mesh.excursions:
+            return ds
+        lengths, shifts = excursion_lengths(base.orbit), base.tangent.phases
+        falls = np.array([shifts[i] - shifts[j] for i, j in base.orbit.mesh.excursions])
+        brief = (lengths < np.sqrt(self.solver.tolerance.orbit)) & (falls > 0)
+        ends = lengths[brief] / falls[brief]
+        ends = ends[ends < LOOKED]
+        return max(ds, BEYOND * float(ends.min())) if len(ends) else ds
 
     def change(self, base: Solution, ds: float) -> Change | None:
         """Return the first change of pattern on the way, if there is one.

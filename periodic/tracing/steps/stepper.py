@@ -19,7 +19,7 @@ from periodic.correction.solver import Solver
 from periodic.orbit.mesh import Mesh
 from periodic.refinement.adaptation import carried, is_refined, refined, remeshed
 from periodic.tracing.collapse import collapsed
-from periodic.tracing.steps.foresight import Foresight
+from periodic.tracing.steps.foresight import LOOKED, Foresight
 from periodic.tracing.steps.patternchange import Reached, reached
 from periodic.tracing.steps.stepbounds import bound_ratios
 from periodic.tracing.steps.stepsize import ArclengthControl
@@ -138,9 +138,10 @@ class Stepper:
     def _end(self, base: Solution, ds: float) -> tuple[Solution, Reached | None]:
         """The end of a step, and the change of pattern that it ends at, foreseen or found."""
         solver, system, method = self.solver, self.solver.problem.system, self.solver.discretisation
-        foreseen = self.foresight.change(base, ds)
+        ahead = ds if self.control.ds_max >= LOOKED else self.foresight.reach(base, ds)
+        foreseen = self.foresight.change(base, ahead)
         if foreseen is not None:
-            at = reached(solver, base, None, ds, foreseen)
+            at = reached(solver, base, None, ahead, foreseen)
             if at is not None:
                 return at.end, at
         guess = spaced(base.orbit, self.foresight.guess(base, ds))

@@ -7,7 +7,7 @@ stability is accounted for by a special point inside it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -15,20 +15,23 @@ import numpy as np
 from periodic.bifurcations.codimension2 import codim2
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, Gap, entry, gaps
-from periodic.bifurcations.location import Sought, special_points
+from periodic.bifurcations.location import Sought, special_points, with_peaks
 from periodic.bifurcations.testfunction import Course, TestFunction, margins
 from periodic.bifurcations.turningpoint import Found
 from periodic.bifurcations.withinstep import RejectedError
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.refinement.adaptation import carried
+from periodic.results.point import Point
 from periodic.results.stop import Reason, Stop
 from periodic.tracing.state import State
 from periodic.tracing.steps.foresight import Foresight
 from periodic.tracing.steps.overchanges import over_changes
 from periodic.tracing.steps.patternchange import Reached, standing
+from periodic.tracing.steps.peaklocation import peaks
 from periodic.tracing.steps.stepper import BeyondError, Stepper, WordError
 from periodic.tracing.steps.stepsize import ArclengthControl
+from periodic.tracing.steps.watchedswings import WatchedSwings
 
 NEARLY = 1e-2
 """Least step, in parts of the first one, with which a branch is followed towards orbits that the method does
@@ -75,14 +78,17 @@ class Steps:
         The user's events.
     user : sequence of float
         Values of the parameter that get a point (UZ).
+    swings : WatchedSwings
+        The peak to peaks that are watched.
     """
 
     solver: Solver
     control: ArclengthControl
     tests: tuple[TestFunction, ...]
     user: Sequence[float]
+    swings: WatchedSwings = field(default_factory=WatchedSwings)
 
-    def take(self, state: State, base: Solution, worded: bool) -> Step | Refused:
+    def take(self, state: State, base: Solution, behind: Sequence[Point], worded: bool) -> Step | Refused:
         """Take one step, as long as can be.
 
         Parameters
@@ -91,6 +97,8 @@ class Steps:
             Where the branch stands.
         base : Solution
             Its last solution, on a mesh for the step.
+        behind : sequence of Point
+            The points so far, that solution last.
         worded : bool
             Whether to stop at once at an orbit that violates its word, which may be read from its motion.
 
@@ -105,7 +113,7 @@ class Steps:
         at_grazing = standing(base, self._foresight.change(base, ds)) if state.steps == 0 else None
         if at_grazing is not None:
             return Step(base, ds, [], Course(), at_grazing)
-        over = self._over_changes(base, ds, sought)
+        over = self._over_changes(base, ds, sought, behind[-1])
         if over is not None:
             return over
         longest = np.inf  # the next step is no longer where a longer one has just failed
@@ -114,10 +122,13 @@ class Steps:
                 tried = self._stepper.step(base, ds)
                 base, new, length = tried.base, tried.new, tried.ds
                 final = tried.change is not None and tried.change.change.final
+                bend = self._bend(behind, new, length)
                 found = special_points(self.solver, base, new, length, replace(sought, final=final))
+                found = self._with_peaks(behind[-1], base, new, length, found)
                 self._check_balance(origin, new, found, length)
                 further = min(
-                    control.next_size(length, new.correction.iterations, tried.bound_ratio), longest
+                    control.next_size(length, new.correction.iterations, max(tried.bound_ratio, bend)),
+                    longest,
                 )
                 return Step(new, further, found, self._course(base, length), tried.change, ds)
             except RejectedError as rejected:
@@ -143,12 +154,38 @@ class Steps:
             return None
         return Step(at.end, self.control.ds, [], self._course(base, at.ds), at, self.control.ds)
 
-    def _over_changes(self, base: Solution, ds: float, sought: Sought) -> Step | None:
+    def _bend(self, behind: Sequence[Point], new: Solution, ds: float) -> float:
+        """How long a step is to one that watched measures allow. Raises RejectedError if it is too long."""
+        ratio = self.swings.ratio(behind, new, ds)
+        if ratio > 1 and ds > NEARLY * self.control.ds:
+            raise RejectedError("a measure bends too much for the step", self.control.shorter(ratio))
+        return ratio
+
+    def _with_peaks(
+        self, before: Point, base: Solution, new: Solution, ds: float, found: list[Found]
+    ) -> list[Found]:
+        """The special points of a step with those at which a watched measure is stationary.
+
+        Where they cannot be located the step is rejected, unless it is short already.
+        """
+        tests = self.swings.stationary(before, new, ds)
+        if not tests or any(point.shrunk for point in found):
+            return found
+        try:
+            return with_peaks(found, peaks(self.solver, base, new, ds, tests))
+        except RejectedError:
+            if ds > NEARLY * self.control.ds:
+                raise
+            return found
+
+    def _over_changes(self, base: Solution, ds: float, sought: Sought, before: Point) -> Step | None:
         """A step in which the word changes and nothing is to be located, if it is one."""
         if sought.tests:
             return None
         over = over_changes(self._foresight, self.control, base, ds, sought.course)
         if over is None or not self._plain(base, over.new, sought):
+            return None
+        if self.swings.stationary(before, over.new, over.ds):
             return None
         further = self.control.next_size(over.ds, over.new.correction.iterations, over.bound_ratio)
         return Step(over.new, further, [], self._course(base, over.ds))

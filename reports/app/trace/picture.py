@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from periodic.results.branch import PEAK_OF
 from periodic.results.plots.curve import draw_curve
 from periodic.results.plots.labels import placed
 from symbolic.scenes.schema import Scene
@@ -27,7 +28,9 @@ def draw(path: Path, scene: Scene, branch: Branch, integrated: Settlements | Non
     """Write the picture of a branch as a PNG file, with what time integration settles to."""
     drawn = figure(5.0)
     axes, view = drawn.add_subplot(), view_of(scene)
-    draw_curve(axes, *_values(view, branch), branch.stable_between, color=BLUE)
+    name, size = view.drawn
+    across, up = branch.curve(name)
+    draw_curve(axes, across / view.unit, up / size, branch.stable_between, color=BLUE)
     if integrated is not None:
         _integrated(axes, integrated, view.stem)
     _asked_for(axes, view, branch)
@@ -68,8 +71,9 @@ def _asked_for(axes: Axes, view: View, branch: Branch) -> None:
 
 def _marks(axes: Axes, view: View, branch: Branch) -> None:
     """Mark and name special points and where a trace failed, each name where it covers nothing."""
+    own = PEAK_OF + view.drawn[0].rpartition(" ")[0]
     for point, *at in zip(branch, *_values(view, branch), strict=True):
-        if point.label.value in ("", "EP", "UZ"):
+        if point.label.value in ("", "EP", "UZ") or (point.label.value == "PK" and point.event != own):
             continue
         x, y = map(float, at)
         axes.plot(x, y, "o", color=INK, markersize=5, zorder=5)

@@ -10,14 +10,19 @@ from importlib.metadata import version
 from platform import python_version
 from typing import TYPE_CHECKING, Any
 
+from periodic.bifurcations.label import Label
+from periodic.results.branch import PEAK_OF
 from periodic.results.textcell import text_cell
 from symbolic.scenes.schema import Scene
 
 from ..settings import parameters
-from ..view import Cell, Column, View, view_of
+from ..view import LABEL, Cell, Column, View, view_of
 
 if TYPE_CHECKING:
     from periodic import Branch, Point
+
+SWINGS = ("_pp_um", "_pp", "_max")
+"""How the names of columns of outputs end."""
 
 
 def json_text(name: str, scene: Scene, branch: Branch) -> str:
@@ -36,6 +41,7 @@ def summary(name: str, scene: Scene, branch: Branch) -> dict[str, Any]:
         "scene": name,
         "parameters": parameters(scene),
         "special_points": [_told(view, point) for point in branch.special_points],
+        "peaks": {name: [_told(view, point) for point in found] for name, found in branch.peaks.items()},
         "points": len(branch),
         "newton_iterations": branch.newton_iterations,
         "elapsed_s": branch.elapsed,
@@ -80,13 +86,25 @@ def _csv_cell(cell: Cell) -> str:
 
 
 def special_table(scene: Scene, branch: Branch) -> tuple[list[str], list[list[str]]]:
-    """Return headings and rows of the special points for people, without what the scene does not have."""
-    points = branch.special_points
+    """Return headings and rows of special points and peaks for people, without what the scene does not have.
+
+    Peaks are those of the outputs that the table has.
+    """
+    told = {column.name.removesuffix(suffix) for column in view_of(scene).tabulated for suffix in SWINGS}
+    others = {point for name, found in branch.peaks.items() for point in found if _of(name) not in told}
+    points = [point for point in branch.points if point.label and point not in others]
     columns = [c for c in view_of(scene).tabulated if any(c.value(point) is not None for point in points)]
     return [c.heading for c in columns], [[_read(c, point) for c in columns] for point in points]
 
 
+def _of(peak: str) -> str:
+    """The output that a peak is of."""
+    return peak.removeprefix(PEAK_OF)
+
+
 def _read(column: Column, point: Point) -> str:
+    if column is LABEL and point.label is Label.PEAK:
+        return f"{point.label.value} {_of(point.event)}"
     cell = column.value(point)
     if isinstance(cell, bool):
         return "yes" if cell else "no"

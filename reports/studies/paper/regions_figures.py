@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from periodic import Branch, Label
-from periodic.results.plots.curve import smooth
+from periodic.results.betweenpoints import smooth
 from reports.studies.pages.figures import PAPER, SECOND, TRUSTED, panels
 from reports.studies.paper.branches.regions_curves import (
     AMPLITUDE,

@@ -52,7 +52,13 @@ def linear() -> sym.CompiledSystem:
 def test_peak_is_exact_between_points(kind: Any, method: Any) -> None:
     """Assert place (1e-7) and height (1e-7) of a linear resonance, with and without exact derivatives."""
     task = per.maps.Task(
-        kind(), "Omega", (0.5, 1.6), numbers={"peak": per.maps.Highest(SWING)}, method=method, tol=1e-8
+        kind(),
+        "Omega",
+        (0.5, 1.6),
+        numbers={"peak": per.maps.Highest(SWING)},
+        method=method,
+        tol=1e-8,
+        watch=per.Watch(peaks={}),
     )
     peak = numbers_of(task)["peak"]
     assert peak[""] == pytest.approx(PEAK, rel=1e-9)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
 
@@ -20,6 +20,8 @@ class Point:
 
     parameter: float
     slope: float = 1.0
+    minimum_slope: dict[str, float] = field(default_factory=dict)
+    maximum_slope: dict[str, float] = field(default_factory=dict)
 
 
 LAYOUT = Layout((), (), (), ())

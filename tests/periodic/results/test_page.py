@@ -38,8 +38,12 @@ def test_page_holds_the_branch(branch: per.Branch, file: Path) -> None:
     data = held(file)
     assert data["parameter"] == {"name": "Omega", "unit": "Hz"}
     assert [q["unit"] for q in data["signals"]] == ["mm", "mm/s"] and data["pairs"] == [[0, 1]]
-    assert [p["label"] for p in data["points"] if p["label"]] == ["EP", "LP", "LP", "EP"]
+    assert [p["label"] for p in data["points"] if p["label"]] == ["EP", "peak of x", "LP", "LP", "EP"]
     orbits = np.frombuffer(base64.b64decode(data["orbits"]), "<f4").reshape(len(branch), 2, data["samples"])
+    (across, up), parts = data["curves"][0], data["parts"]
+    assert len(across) == len(up) == parts * (len(branch) - 1) + 1
+    assert up[::parts] == pytest.approx([p["heights"][0] for p in data["points"]], rel=1e-5)
+    assert across[::parts] == pytest.approx([p["at"] for p in data["points"]], rel=1e-5)
     for k in (0, len(branch) // 2, len(branch) - 1):
         point, told = branch[k], data["points"][k]
         assert told["at"] == pytest.approx(point.parameter / (2 * math.pi), rel=1e-14)
@@ -65,7 +69,8 @@ def test_long_branch_is_thinned(branch: per.Branch, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr("periodic.results.interactive.content.MOST_POINTS", 12)
     data = held(per.page(branch, tmp_path / "a.html"))
     assert len(data["points"]) < 20
-    assert [p["label"] for p in data["points"] if p["label"]] == ["EP", "LP", "LP", "EP"]
+    assert data["curves"] is None
+    assert [p["label"] for p in data["points"] if p["label"]] == ["EP", "peak of x", "LP", "LP", "EP"]
 
 
 def test_what_is_no_page_is_refused(branch: per.Branch, tmp_path: Path) -> None:

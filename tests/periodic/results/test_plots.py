@@ -81,7 +81,15 @@ def test_legend_names_what_is_drawn(axes: Axes) -> None:
     legend = axes.get_legend()
     assert legend is not None
     names = [text.get_text() for text in legend.get_texts()]
-    assert names == ["gears", "unstable", "GR grazing", "LP fold", "Duffing", "asked for"]
+    assert names == [
+        "gears",
+        "unstable",
+        "GR grazing",
+        "PK peak or trough",
+        "LP fold",
+        "Duffing",
+        "asked for",
+    ]
 
 
 def test_units(axes: Axes) -> None:

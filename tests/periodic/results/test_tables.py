@@ -86,7 +86,7 @@ def test_tables_of_nothing() -> None:
 REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
     "label": (
         lambda: branch().labelled("XX"),
-        "label is 'XX'; it must be one of EP, LP, PD, .*, three, never$",
+        "label is 'XX'; it must be one of EP, LP, PD, .*, three, never, peak of x$",
     ),
     "output": (lambda: branch().peak_to_peak("y"), "output is 'y'; it must be one of x$"),
     "of a point": (lambda: branch()[0].peak_to_peak("y"), "output is 'y'; it must be one of x$"),

@@ -104,4 +104,4 @@ def test_peaks_by_name() -> None:
     branch = per.trace(duffing(), "Omega", (0.5, 3.0), start=0.5, watch=watch)
     assert set(branch.peaks) == {"high", "none"}
     assert branch.peaks["high"] == branch.labelled("high") and len(branch.peaks["high"]) >= 1
-    assert per.trace(duffing(), "Omega", (2.5, 3.0)).peaks == {}
+    assert per.trace(duffing(), "Omega", (2.5, 3.0)).peaks == {"peak of x": (), "peak of v": ()}

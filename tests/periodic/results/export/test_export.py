@@ -80,7 +80,9 @@ def test_each_format_holds_the_branch(
     assert per.export(branch, file, samples=SAMPLES)[0] == file
     values, times, x, labels = read(file)
     assert values == pytest.approx(branch.values, rel=1e-14)
-    assert labels == [point.label.value for point in branch]
+    named = [point.event or point.label.value for point in branch]
+    assert "peak of x" in named
+    assert [label.replace(" ", "") for label in labels] == [name.replace(" ", "") for name in named]
     for point, t, motion in zip(branch, times, x, strict=True):
         exact = np.arange(SAMPLES) * point.orbit.period / SAMPLES
         assert t == pytest.approx(exact, rel=digits, abs=digits)

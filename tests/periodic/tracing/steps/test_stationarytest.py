@@ -37,7 +37,7 @@ def test_resonance_of_an_oscillator(ratio: float, measure: Any) -> None:
     watch = per.Watch(peaks={"resonance": measure})
     branch = per.trace(oscillator(ratio), "Omega", (0.5, 1.5), tol=1e-8, watch=watch)
     (peak,) = branch.labelled("resonance")
-    assert (peak.label, peak.event) == ("UZ", "resonance")
+    assert (peak.label, peak.event) == ("PK", "resonance")
     assert peak.parameter == pytest.approx(math.sqrt(1 - 2 * ratio**2), rel=1e-6)
     assert peak.peak_to_peak("x") == pytest.approx(1 / (ratio * math.sqrt(1 - ratio**2)), rel=1e-9)
     assert max(p.peak_to_peak("x") for p in branch) <= peak.peak_to_peak("x") * (1 + 1e-12)

@@ -1,0 +1,122 @@
+"""Where peak to peaks are stationary in a step: by Hermite's interpolation of all that is known within it.
+
+An orbit solved for within a step tells the peak to peaks of all outputs and their slopes. A polynomial
+through those of the nearest orbits predicts where a slope vanishes; once it predicts the same place with one
+more orbit, that orbit is the one sought. Peaks of several outputs at one resonance share what is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from periodic.bifurcations.location import refined_place
+from periodic.bifurcations.testfunction import TestFunction
+from periodic.bifurcations.turningpoint import Found
+from periodic.bifurcations.withinstep import WithinStep
+from periodic.correction.measured import measured
+from periodic.correction.solution import Solution
+from periodic.correction.solver import Solver
+from periodic.orbit.scheme import Array
+
+HALVED = 0.5
+"""Part of itself to which two orbits shorten the interval in which a slope vanishes, or it is halved: where
+the step is long beside a peak, as beside a grazing, polynomials do not predict it."""
+
+ROUNDED = 1e-9
+"""Imaginary part up to which a root of a polynomial is real."""
+
+JUMP = 1e-3
+"""Largest slope at its zero, in parts of the larger one at the ends of the step: else it jumps."""
+
+
+def peaks(
+    solver: Solver, base: Solution, new: Solution, ds: float, tests: Mapping[int, TestFunction]
+) -> list[Found]:
+    """Return the points of a step at which peak to peaks are stationary, in any order.
+
+    Parameters
+    ----------
+    solver : Solver
+        The problem and how it is solved.
+    base, new : Solution
+        Its ends, on one mesh.
+    ds : float
+        Its length in arclength.
+    tests : mapping of int to TestFunction
+        By index of the output, the test function of its stationary points, of opposite signs at the ends.
+
+    Returns
+    -------
+    list of Found
+        None of an output whose slope jumps, as where one of two maxima takes over from the other.
+
+    Raises
+    ------
+    RejectedError
+        Where there is no orbit within the step.
+    """
+    within = WithinStep(solver, base, {0.0: base, ds: new}, ds)
+    return [found for output, test in tests.items() for found in _peak(within, output, test, ds)]
+
+
+def _peak(within: WithinStep, output: int, test: TestFunction, ds: float) -> Iterator[Found]:
+    """Yield the point of one output, if its slope vanishes."""
+    precision, lengths = test.precision * ds, [np.inf, np.inf]
+    while True:
+        places, values, slopes = _known(within, output)
+        (turns,) = np.nonzero(slopes[:-1] * slopes[1:] <= 0)
+        if not len(turns):
+            return
+        k = int(turns[0])
+        low, high = places[k], places[k + 1]
+        slow = high - low > HALVED * lengths[-2]
+        place = (low + high) / 2 if slow else _vertex(places, values, slopes, k)
+        nearest = float(places[np.abs(places - place).argmin()])
+        if abs(place - nearest) <= precision or high - low <= precision:
+            break
+        lengths.append(high - low)
+        within.at(place, nearest=True)
+    slope = float(np.abs(slopes[places == nearest]).max())
+    if slope <= JUMP * max(abs(slopes[0]), abs(slopes[-1])):
+        yield refined_place(within.solver, nearest, within.at(nearest), ds, test)
+
+
+def _known(within: WithinStep, output: int) -> tuple[Array, Array, Array]:
+    """Places of the orbits that are known within the step, the output's peak to peak and its slope there.
+
+    Places are measured along the tangent of the base, slopes along that of each orbit.
+    """
+    found, base = sorted(within.known.items(), key=lambda item: item[0]), within.base
+    along = within.solver.constraint(base.orbit, base.tangent, 0.0)
+    each = [(measured(solution), along.rate(solution.tangent)) for _, solution in found]
+    return (
+        np.array([place for place, _ in found]),
+        np.array([one.peak_to_peak[output] for one, _ in each]),
+        np.array([one.peak_to_peak_slope[output] / rate for one, rate in each]),
+    )
+
+
+def _vertex(places: Array, values: Array, slopes: Array, turn: int) -> float:
+    """Where the slope vanishes between `turn` and the next place, by a polynomial.
+
+    It is laid through values and slopes at both and, where there is one no nearer, at the next place.
+    """
+    low, high = places[turn], places[turn + 1]
+    if slopes[turn] == 0 or slopes[turn + 1] == 0:
+        return float(low if slopes[turn] == 0 else high)
+    length = high - low
+    t, step = (places - low) / length, length * slopes
+    away = np.abs(t - 0.5) - 0.5
+    others = np.flatnonzero(away >= HALVED)
+    chosen = [turn, turn + 1, *others[away[others].argsort()[:1]]]
+    powers = np.arange(2 * len(chosen))
+    rows = [t[chosen, None] ** powers, powers * t[chosen, None] ** np.maximum(powers - 1, 0)]
+    known = np.concatenate([values[chosen] - values[turn], step[chosen]])
+    derivative = np.polynomial.Polynomial(np.linalg.solve(np.vstack(rows), known)).deriv()
+    roots = np.asarray(derivative.roots(), dtype=np.complex128)
+    inside = roots.real[(np.abs(roots.imag) < ROUNDED) & (roots.real > 0) & (roots.real < 1)]
+    return float(
+        low + length * (inside[0] if len(inside) == 1 else step[turn] / (step[turn] - step[turn + 1]))
+    )

@@ -1,0 +1,159 @@
+"""Peak to peaks that a branch watches by default: its curve between the points, and their peaks."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+from support.drawn.machines.drawn import machine
+
+import periodic as per
+import symbolic as sym
+from periodic.tracing.steps.watchedswings import WatchedSwings, _continued
+
+
+def oscillator(ratio: float) -> sym.CompiledSystem:
+    """A mass on a spring, forced by 1 N."""
+    x, omega = sym.coordinate("x"), sym.parameter("Omega", 0.5, "rad/s")
+    parts = [sym.Mass(x, 1.0), sym.Spring(x, 1.0), sym.Damper(x, 2 * ratio), sym.HarmonicForce(x, 1.0, omega)]
+    return sym.compile(sym.combine(parts))
+
+
+def swing(omega: np.ndarray, ratio: float) -> np.ndarray:
+    """Peak to peak of x in closed form."""
+    return 2 / np.hypot(1 - omega**2, 2 * ratio * omega)
+
+
+@pytest.mark.parametrize("method", [per.Collocation(), per.Shooting(), per.HarmonicBalance()])
+@pytest.mark.parametrize("ratio", [0.003, 0.03, 0.3])
+def test_resonance_is_a_point_and_the_curve_is_right(ratio: float, method: per.Discretisation) -> None:
+    """Assert the peak of an oscillator to 1e-6 and its curve to 1 % of its range, unasked."""
+    branch = per.trace(oscillator(ratio), "Omega", (0.5, 1.5), method=method)
+    (peak,) = branch.peaks["peak of x"]
+    assert (peak.label, peak.event) == ("PK", "peak of x")
+    assert peak.parameter == pytest.approx(math.sqrt(1 - 2 * ratio**2), rel=1e-6)
+    assert peak.peak_to_peak("x") == pytest.approx(1 / (ratio * math.sqrt(1 - ratio**2)), rel=1e-6)
+    assert peak in branch.points
+    assert peak not in branch.special_points
+    omega, found = branch.curve("x p-p")
+    true = swing(omega, ratio)
+    assert np.abs(found - true).max() < 0.01 * np.ptp(true)
+
+
+def test_trough_too() -> None:
+    """Assert resonances of two masses, and the troughs between, against their response in closed form."""
+    x, y, omega = sym.coordinate("x"), sym.coordinate("y"), sym.parameter("Omega", 0.3, "rad/s")
+    parts = [sym.Mass(x, 1.0), sym.Mass(y, 1.0), sym.Spring(x, 1.0), sym.Spring(x, 1.0, to=y)]
+    damped = [sym.Damper(x, 0.01, to=y), sym.HarmonicForce(x, 1.0, omega)]
+    system = sym.compile(sym.combine([*parts, *damped]))
+    branch = per.trace(system, "Omega", (0.3, 2.0))
+    places = {"x": (0.618, 1.0, 1.618), "y": (0.618, 1.225, 1.618)}
+    for k, name in enumerate("xy"):
+        for peak, near, sign in zip(branch.peaks[f"peak of {name}"], places[name], (-1, 1, -1), strict=True):
+
+            def height(omega: float, k: int = k, sign: int = sign) -> float:
+                stiff = np.array([[2.0, -1.0], [-1.0, 1.0]]) + 0.01j * omega * np.array([[1, -1], [-1, 1]])
+                return sign * float(np.abs(np.linalg.solve(stiff - omega**2 * np.eye(2), [1.0, 0.0])[k]))
+
+            true = minimize_scalar(height, (near - 1e-3, near, near + 1e-3), tol=1e-10)
+            assert peak.parameter == pytest.approx(true.x, rel=1e-6)
+            assert peak.peak_to_peak(name) == pytest.approx(2 * sign * true.fun, rel=1e-6)
+
+
+def test_none_where_none_are_wanted() -> None:
+    """Assert an empty mapping, no peaks in between, and the longer steps."""
+    system = oscillator(0.03)
+    plain = per.trace(system, "Omega", (0.5, 1.5), watch=per.Watch(peaks={}))
+    assert plain.peaks == {}
+    assert len(plain) < len(per.trace(system, "Omega", (0.5, 1.5)))
+
+
+def test_constant_swing_has_no_peaks() -> None:
+    """Assert that rounding makes none, of a swing that the parameter does not change."""
+    x, force = sym.coordinate("x"), sym.parameter("rest", 1.0, "N")
+    parts = [sym.Mass(x, 1.0), sym.Spring(x, 1.0), sym.Damper(x, 0.1), sym.HarmonicForce(x, 1.0, 1.0)]
+    system = sym.compile(sym.combine([*parts, sym.ConstantForce(x, force)]))
+    branch = per.trace(system, "rest", (1.0, 2.0))
+    assert branch.peaks == {"peak of x": ()}
+    assert np.ptp(branch.peak_to_peak("x")) < 1e-6 * branch[0].peak_to_peak("x")
+
+
+def test_cubic_is_continued() -> None:
+    """Assert that a cubic, continued, is itself, and so is its slope."""
+    a, b, end = 1.0, 3.0, 4.5
+    value, slope = _continued(
+        np.array([a**3]), np.array([3 * a**2]), np.array([b**3]), np.array([3 * b**2]), b - a, end - b
+    )
+    assert value == pytest.approx([end**3], rel=1e-13)
+    assert slope == pytest.approx([3 * end**2], rel=1e-13)
+
+
+def test_nothing_is_watched_by_default_of_a_record() -> None:
+    """Assert that without tests a step has no bound and no peaks."""
+    branch = per.trace(oscillator(0.3), "Omega", (0.5, 1.5))
+    watched = WatchedSwings()
+    assert watched.ratio(branch.points, branch[-1], 0.1) == 0.0  # type: ignore[arg-type]
+    assert watched.stationary(branch[0], branch[-1], 0.1) == {}  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("family", "seed"),
+    [("journal bearings", 0), ("squeeze-film dampers", 2), ("gear pairs", 1), ("gears on two shafts", 1)],
+)
+def test_machines_of_the_catalogue(family: str, seed: int) -> None:
+    """Assert curves of every coordinate to 1 % of their range, at orbits between all points of a branch."""
+    drawn = machine(family, seed)
+    system = sym.compile(drawn.model)
+    branch = per.trace(system, drawn.parameter, drawn.bounds)
+    fine = per.trace(
+        system,
+        drawn.parameter,
+        drawn.bounds,
+        control=per.ArclengthControl(ds=0.01, ds_max=0.01),
+        watch=per.Watch(peaks={}),
+    )
+    assert len(fine) > 2 * len(branch)
+    for name in (peak.removeprefix("peak of ") for peak in branch.peaks):
+        x, y = branch.curve(f"{name} p-p", each=64)
+        spans = np.ptp(x), np.ptp(y)
+        line = np.column_stack([x / spans[0], y / spans[1]])
+        points = np.column_stack([fine.values / spans[0], fine.peak_to_peak(name) / spans[1]])
+        assert max(_away(point, line) for point in points) < 0.01
+
+
+def _away(point: np.ndarray, line: np.ndarray) -> float:
+    """The distance of a point from straight pieces."""
+    begin, way = line[:-1], np.diff(line, axis=0)
+    place = np.clip(np.sum((point - begin) * way, axis=1) / np.maximum(np.sum(way**2, axis=1), 1e-300), 0, 1)
+    return float(np.hypot(*(begin + place[:, None] * way - point).T).min())
+
+
+def test_halves_turn_their_slopes() -> None:
+    """Assert that a branch traced both ways from its middle has the curve of one traced through."""
+    system = oscillator(0.1)
+    both = per.trace(system, "Omega", (0.5, 1.5), start=1.0)
+    assert 0 < both.backwards < len(both)
+    omega, found = both.curve("x p-p")
+    assert np.abs(found - swing(omega, 0.1)).max() < 0.01 * np.ptp(found)
+    for a, b in itertools.pairwise(both.points[1:-1]):
+        assert b.parameter > a.parameter
+        assert a.slope > 0
+
+
+def test_files_keep_slopes(tmp_path: object) -> None:
+    """Assert the same curve of a branch from its file, and one without slopes of points of an older file."""
+    from dataclasses import replace
+    from pathlib import Path
+
+    branch = per.trace(oscillator(0.1), "Omega", (0.5, 1.5))
+    path = Path(str(tmp_path)) / "branch.nc"
+    branch.save(path)
+    read = per.Branch.load(path)
+    assert np.array_equal(read.curve("x p-p"), branch.curve("x p-p"))
+    old = replace(branch, points=tuple(replace(p, minimum_slope={}, maximum_slope={}) for p in branch.points))
+    straight, exact = old.curve("x p-p"), branch.curve("x p-p")
+    assert np.abs(straight[1] - np.interp(straight[0], branch.values, branch.peak_to_peak("x"))).max() < 1e-12
+    assert not np.allclose(straight[1], exact[1], rtol=1e-3)
