@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from periodic.conditions.phase import open_phase
 from periodic.conditions.variations import equations, variations
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.condition import Condition, side_conditions
@@ -65,10 +66,14 @@ def doubled(
 
     Raises
     ------
+    ValueError
+        Where nothing determines the period of an orbit of a system that is not excited.
     SwitchError
         Where no orbit of the new branch is found.
     """
     orbit = as_read_by(system, orbit).collocated()
+    if not any(condition.trivial for condition in (determined or {}).values()):
+        _check_excited(system, orbit)
     once = away(system, orbit, -1, autonomous=False)
     twice = repeated(orbit, 2)
     nodes = np.concatenate([once.nodes[:-1], -once.nodes])
@@ -81,6 +86,12 @@ def doubled(
         profile=nodes,
     )
     return switched(system, twice, direction, parameter, determined or {}, distance)
+
+
+def _check_excited(system: System, orbit: Orbit) -> None:
+    """Raise ValueError where the equations leave phase and period of an orbit open."""
+    if not orbit.equilibrium and (why := open_phase(system, orbit.parameter)):
+        raise ValueError(f"determined has no phase condition: {why}")
 
 
 def branched(

@@ -10,6 +10,7 @@ import numpy as np
 from periodic.conditions.twoparameter.augmented import of_orbits
 from periodic.correction.condition import Condition, Given, SideCondition
 from periodic.linear.unknowns import mean_weights, node_phase_gradient
+from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -38,7 +39,7 @@ class PhaseCondition(Condition):
 
     def check(self, system: System, parameter: Array) -> None:
         """Refuse an excited system, whose equations hold the phase of its orbits."""
-        if _excited(system, parameter):
+        if excited(system, parameter):
             raise ValueError(
                 f"determined has {type(self).__name__}(), for orbits whose phase is free; "
                 f"it must be left out, as the system is excited: its equations depend on the phase"
@@ -82,7 +83,31 @@ class _Phase:
         return Row(float(value), weighted, outer)
 
 
-def _excited(system: System, parameter: Array) -> bool:
+def open_phase(system: System, parameter: Array) -> str:
+    """Return why nothing determines the period of orbits without a phase condition; empty if something does.
+
+    Parameters
+    ----------
+    system : System
+        The equations.
+    parameter : Array
+        Parameters in SI units, shape (p,).
+
+    Returns
+    -------
+    str
+        A clause that says which condition there is for it.
+    """
+    names = layout_of(system).frequency
+    if len(names) != 1 or excited(system, parameter):
+        return ""
+    return (
+        f"the system is not excited, and determined={{{names[0]!r}: PhaseCondition()}} alone determines the "
+        f"period of its orbits"
+    )
+
+
+def excited(system: System, parameter: Array) -> bool:
     """Whether the equations depend on the phase otherwise than by a constant shift of the unknowns.
 
     Where F(x', x + s e, tau + s) = F(x', x, tau) for one vector e, as with angles ahead of a mean rotation,

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from periodic.bifurcations.switching import away
+from periodic.conditions.phase import open_phase
 from periodic.correction.outcome import FAILURES, Outcome
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
@@ -123,12 +124,15 @@ class Start:
 
     def why_not(self, outcome: Outcome, parameter: Array) -> str:
         """Say why there is no first orbit at parameters (p,), what was tried, and what else there is."""
-        if not self.tried:
-            return outcome.value
         problem = self.solver.problem
         method, system = self.solver.discretisation, problem.system
+        held = ""
+        if not (problem.autonomous or method.stability is Stability.EIGENVALUES):
+            held = "".join(f"; {why}" for why in (open_phase(system, parameter),) if why)
+        if not self.tried:
+            return outcome.value + held
         free = [] if problem.autonomous else method.drifting(system, parameter)
-        held = f"; nothing holds {' and '.join(free)}" if free else ""
+        held += f"; nothing holds {' and '.join(free)}" if free else ""
         return (
             f"{outcome.value}{held}; nor was one found from {', '.join(self.tried)}; "
             f"guess=per.sampled(...) takes a motion from a simulation"

@@ -153,6 +153,7 @@ class Equations(Part):
             row = assembly.omega * state.derivative - found[name]
             assembly.differential_rows.append(row / state.scale)
             assembly.output(name, "", state.symbol)
+        _determined({name: found[name] for name in self.unknowns}, [symbols[name] for name in self.unknowns])
         assembly.algebraic_rows.extend(found[name] for name in self.unknowns)
         for q in self.coordinates:
             assembly.motion(q).force += found.get(q.name, ca.SX(0))
@@ -217,6 +218,21 @@ def _flat(resets: Callable[..., object] | None, arguments: Sequence[object]) -> 
         flat[str(event)] = pair[0]
         flat |= {f"{state} of {event}": value for state, value in pair[1].items()}
     return flat
+
+
+def _determined(rows: dict[str, ca.SX], unknowns: list[ca.SX]) -> None:
+    """Refuse rows that do not tell the unknowns, whatever their values: their index is above 1."""
+    if not rows:
+        return
+    symbols, each = ca.vertcat(*unknowns), ca.vertcat(*rows.values())
+    if ca.sprank(ca.jacobian(each, symbols)) == len(rows):
+        return
+    empty = [name for name, row in rows.items() if not ca.depends_on(row, symbols)]
+    why = f"that of {empty[0]!r} contains none of them" if empty else "they contain too few of them"
+    raise ValueError(
+        f"unknowns has {', '.join(map(repr, rows))}, not determined by their equations: {why} "
+        f"(index above 1); they must be differentiated in time until they determine them"
+    )
 
 
 def _fitting(

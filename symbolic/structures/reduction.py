@@ -15,6 +15,7 @@ from symbolic.arrays import Array, Complex
 from symbolic.checks import finite, positive, refusal, whole
 from symbolic.structures.flexibility import flexibility, indices, solved
 from symbolic.structures.matrices import Matrices, Matrix, dense, lowest, modes, sparse
+from symbolic.structures.rounding import LEFT, hidden
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,8 +97,8 @@ def craig_bampton(matrices: Matrices, places: Sequence[str | int], modes: int) -
     Raises
     ------
     ValueError
-        For places that do not exist, more modes than there are, and a structure that moves freely while the
-        places are held.
+        For places that do not exist, more modes than there are, a structure that moves freely while the
+        places are held, and one so fine that rounding of its stiffness hides modes.
 
     References
     ----------
@@ -181,7 +182,15 @@ def _cut(matrix: Matrix, rows: Array, columns: Array) -> Matrix:
 
 
 def _modes(stiffness: Matrix, mass: Matrix, count: int) -> Array:
-    return modes(stiffness, mass, count)[1]
+    """The lowest modes of a held structure. Raises ValueError where rounding of K hides one."""
+    squares, shapes = modes(stiffness, mass, count)
+    lost = int(hidden(stiffness, squares, shapes).sum())
+    if lost:
+        raise ValueError(
+            f"the stiffness, right to rounding, does not tell {lost} of the modes with the places held to "
+            f"{LEFT:.0%}; take a coarser mesh"
+        )
+    return shapes
 
 
 def _lowest(matrices: Matrices, count: int) -> tuple[Array, Array]:

@@ -6,6 +6,8 @@ variational equations, integrated to 1e-13.
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -229,6 +231,15 @@ def test_doublings_of_the_spiral() -> None:
         assert point.parameter == pytest.approx(place, rel=1e-9)
         assert period(point, branch) == pytest.approx(duration, rel=1e-9)
         guess = per.doubled(spiral(), point.orbit, "c", determined=ORBIT)
+
+    alone = (
+        r"the system is not excited, and determined={'omega': PhaseCondition\(\)} alone determines the period"
+    )
+    with pytest.raises(ValueError, match=f"^determined has no phase condition: {alone} of its orbits$"):
+        per.doubled(spiral(), point.orbit, "c")
+    loose = trace(spiral(), "c", (3.9, 4.5), guess=replace(guess, parameter=guess.parameter * [1, 1, 1, 1.1]))
+    assert loose.stop.reason is per.Reason.NO_START
+    assert re.search(f"; {alone} of its orbits$", loose.stop.detail)
 
 
 @kept

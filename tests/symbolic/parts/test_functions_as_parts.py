@@ -137,3 +137,33 @@ def test_resets_of_what_is_no_state() -> None:
         )
         with pytest.raises(ValueError, match=said):
             part.contribute(Assembly())
+
+
+@pytest.mark.parametrize("index", [3, 2])
+def test_unknown_that_no_equation_determines(index: int) -> None:
+    """Assert the sentence for a pendulum on a rod, whose force only derivatives of its constraint tell."""
+
+    def pendulum(x: Any, p: Any, wave: Any) -> dict[str, Any]:
+        constraints = {3: x.x**2 + x.y**2 - 1, 2: x.x * x.u + x.y * x.v}
+        return {
+            **{"x": x.u, "y": x.v, "u": -x.rod * x.x + wave.cos, "v": -x.rod * x.y - 9.81},
+            "rod": constraints[index],
+        }
+
+    states = {"x": 0.0, "y": -1.0, "u": 0.0, "v": 0.0}
+    part = sym.Equations(pendulum, states, {"Omega": 1.0}, unknowns={"rod": 9.81}, frequency="Omega")
+    said = "unknowns has 'rod', not determined by their equations: that of 'rod' contains none of them"
+    with pytest.raises(ValueError, match=rf"^{said} \(index above 1\); they must be differentiated in time "):
+        sym.compile(part)
+
+
+def test_unknowns_that_too_few_equations_determine() -> None:
+    """Assert the sentence where two equations contain one of two unknowns."""
+    part = sym.Equations(
+        lambda x, p: {"q": x.a + x.b, "a": x.a - x.q, "b": x.a + x.q},
+        {"q": 0.0},
+        {},
+        unknowns={"a": 0.0, "b": 0.0},
+    )
+    with pytest.raises(ValueError, match="'a', 'b', not determined by .*: they contain too few of them"):
+        sym.compile(part)

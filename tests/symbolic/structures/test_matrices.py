@@ -107,6 +107,11 @@ def test_meshes_too_fine_are_refused() -> None:
     own = sym.Structure(mass, K=stiffness, at={"tip": 19998}, modes=4)
     with pytest.raises(LooseError, match="^structure 'structure' has 1 modes that rounding of K, of a free"):
         own.modal(0.0)
+    matrices = sym.Matrices(mass, None, stiffness, at={"middle": 10000, "tip": 19998})
+    lost = "^the stiffness, right to rounding, does not tell 1 of the modes with the places held to 1%; take"
+    with pytest.raises(ValueError, match=lost):
+        sym.craig_bampton(matrices, ["middle"], 4)
+    assert sym.craig_bampton(matrices, ["middle", "tip"], 2).matrices.size == 4
 
 
 @pytest.mark.parametrize(("error", "said"), [(0.0123, "by 1.2 %, where 1 % is taken"), (2.0, "by 2e.02 %")])
