@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
+import time
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -20,6 +22,9 @@ EVERY = 0.1
 
 _SHOWN = ContextVar("shown", default=False)
 """Whether a bar is shown already: work within it has no bar of its own."""
+
+_SAY: ContextVar[Callable[[str], None] | None] = ContextVar("say", default=None)
+"""Shows a text beside the bar that is shown."""
 
 Advance = Callable[[int, str], None]
 """Called with the number of steps since the last call, and a text about the last of them."""
@@ -50,19 +55,47 @@ def meter(what: str, unit: str, total: int | None = None) -> Iterator[Advance]:
         Takes a number of steps, and a text about the last of them.
     """
     if _SHOWN.get() or not watched():
-        yield lambda steps, said: None
+        silent = _SAY.set(None)
+        try:
+            yield lambda steps, said: None
+        finally:
+            _SAY.reset(silent)
         return
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a notebook without widgets gets a bar of text
         from tqdm.auto import tqdm
     shown = _SHOWN.set(True)
     with tqdm(total=total, desc=what, unit=f" {unit}", delay=DELAY, mininterval=EVERY, leave=False) as bar:
+        later = threading.Timer(DELAY, bar.refresh)  # what is said meanwhile may take minutes
+        later.daemon = True
+        begun = time.monotonic()
 
         def advance(steps: int, said: str) -> None:
             bar.set_postfix_str(said, refresh=False)
             bar.update(steps)
 
+        def say(said: str) -> None:
+            bar.set_postfix_str(said, refresh=time.monotonic() >= begun + DELAY)
+
+        later.start()
+        saying = _SAY.set(say)
         try:
             yield advance
         finally:
+            later.cancel()
+            later.join()
+            _SAY.reset(saying)
             _SHOWN.reset(shown)
+
+
+def say(text: str) -> None:
+    """Say beside the bar that is shown, if there is one, what is being done until it goes on.
+
+    Parameters
+    ----------
+    text : str
+        What, in a few words.
+    """
+    shown = _SAY.get()
+    if shown is not None:
+        shown(text)

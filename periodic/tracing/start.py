@@ -13,6 +13,7 @@ from periodic.correction.outcome import FAILURES, Outcome
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
 from periodic.correction.tolerance import COARSEST, Accuracy
+from periodic.display.meter import say
 from periodic.linear.variation import UnknownVariationsError
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
@@ -27,6 +28,9 @@ from periodic.tracing.settling import held, nowhere, settled, settled_or_none
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 """Parameters, over the wanted one, from which a branch to the first orbit is traced, tried in turn."""
+
+SOUGHT = "looking for a first orbit"
+"""What a bar says of it before what is being tried."""
 
 BESIDE_BOUND = 1e-6
 """How far outside the bounds, as a part of their range, an orbit at a fold on a bound may be."""
@@ -80,6 +84,7 @@ class Start:
     def _found(self, guess: Orbit, sign: float) -> Solution:
         """The first orbit."""
         solver = self.solver
+        say(f"{SOUGHT}: at the start itself")
         first = self._fixed(guess, sign)
         settles = solver.discretisation.settles(solver.problem.system)
         slips = settles and first.ok and np.isinf(first.error.motion)  # violates its word
@@ -97,14 +102,15 @@ class Start:
                 if (last := self._worded(motion, sign)).ok:
                     return last
         if (rest := self._rest(guess)) is not None:
-            self.tried.append("rest under the mean load")
+            self._try("rest under the mean load")
             if (last := self._fixed(rest, sign)).ok:
                 return last
             guess = rest
+        say(f"{SOUGHT}: other methods")
         other = self._by_others(guess, sign)
         if other is not None and other.ok:
             return other
-        self.tried.append(f"other values of {solver.problem.parameter}")
+        self._try(f"other values of {solver.problem.parameter}")
         for factor in ELSEWHERE:
             orbit = self._approached(guess, factor)
             if orbit is not None:
@@ -115,6 +121,11 @@ class Start:
             if orbit is not None and (last := self._worded(orbit, sign)).ok:
                 return last
         return first
+
+    def _try(self, what: str) -> None:
+        """Note what is tried next, and say so to whom it may concern."""
+        self.tried.append(what)
+        say(f"{SOUGHT}: {what}")
 
     def _read(self, guess: Orbit, sign: float) -> Solution | None:
         """The orbit near a guess with the word of its own motion; None where there is none."""
@@ -167,7 +178,7 @@ class Start:
         problem, method = self.solver.problem, self.solver.discretisation
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
             return
-        self.tried.append("a simulation left to settle")
+        self._try("a simulation left to settle")
         try:
             yield from settled(method, problem.system, guess)
         except FAILURES as failed:
@@ -186,7 +197,7 @@ class Start:
             near = replace(guess, parameter=parameter)
             first = solver.at_parameter(self._rest(near) or near, 1.0)
             if first.ok:
-                self.tried.append(f"{quantity.name} grown from 0")
+                self._try(f"{quantity.name} grown from 0")
                 sign = int(np.sign(guess.parameter[k]))
                 orbit, stop = self.follow(solver, first.orbit, sign, GROWN)
                 if orbit is not None and other.value(orbit) == guess.parameter[k]:

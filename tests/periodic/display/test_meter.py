@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
+import time
+from typing import Any
 
 import pytest
 from support.traces import duffing_system
 
 import periodic as per
+import symbolic as sym
 from periodic.display import meter as display
-from periodic.display.meter import meter, watched
+from periodic.display.meter import meter, say, watched
 
 Capture = pytest.CaptureFixture[str]
 Patch = pytest.MonkeyPatch
@@ -37,6 +40,41 @@ def test_trace_is_shown(capsys: Capture) -> None:
     told = capsys.readouterr()
     assert told.out == "" and "tracing over Omega" in told.err and "at 0.3" in told.err
     assert re.split(r"[\r\n]", told.err.rstrip("\r\n"))[-1].strip() == "" and len(branch) > 1
+
+
+@pytest.mark.usefixtures("at_once")
+def test_search_for_a_first_orbit_is_shown(capsys: Capture) -> None:
+    """Assert that the bar says in turn what is being tried where no orbit is found at the start itself."""
+    free = sym.functions
+
+    def loose(x: Any, p: Any, wave: Any) -> dict[str, Any]:
+        play = free.fmax(x.x - 1, 0) + free.fmin(x.x + 1, 0)
+        return {"x": x.v, "v": -0.05 * x.v - play + 0.1 + 0.05 * wave.cos}
+
+    system = sym.compile(sym.Equations(loose, {"x": 0.0, "v": 0.0}, {"Omega": 0.8}, frequency="Omega"))
+    per.trace(system, "Omega", (0.8, 1.0), control=per.ArclengthControl(max_points=2))
+    told = capsys.readouterr().err
+    said = [told.find(f"looking for a first orbit: {what}") for what in ("at the start", "a simulation")]
+    assert 0 <= said[0] < said[1] < told.find("at 0.8")
+
+
+@pytest.mark.usefixtures("at_once")
+def test_long_silence_is_shown(capsys: Capture, monkeypatch: Patch) -> None:
+    """Assert that what was said before the bar is shown stands there once it is, though nothing follows."""
+    monkeypatch.setattr(display, "DELAY", 0.05)
+    with meter("tracing", "points"):
+        say("looking for it")
+        assert "looking for it" not in capsys.readouterr().err
+        time.sleep(0.3)
+        assert "looking for it" in capsys.readouterr().err
+
+
+def test_nobody_is_told_without_a_bar(capsys: Capture) -> None:
+    """Assert silence, outside a bar and within one that nobody sees."""
+    say("anything")
+    with meter("tracing", "points"):
+        say("anything")
+    assert capsys.readouterr().err == ""
 
 
 @pytest.mark.usefixtures("at_once")
