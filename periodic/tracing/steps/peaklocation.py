@@ -71,13 +71,13 @@ def _peak(within: WithinStep, output: int, test: TestFunction, ds: float) -> Ite
             return
         k = int(turns[0])
         low, high = places[k], places[k + 1]
-        slow = high - low > HALVED * lengths[-2]
-        place = (low + high) / 2 if slow else _vertex(places, values, slopes, k)
+        place = _vertex(places, values, slopes, k)
         nearest = float(places[np.abs(places - place).argmin()])
         if abs(place - nearest) <= precision or high - low <= precision:
             break
+        slow = high - low > HALVED * lengths[-2]
         lengths.append(high - low)
-        within.at(place, nearest=True)
+        within.at(float(low + high) / 2 if slow else place)
     slope = float(np.abs(slopes[places == nearest]).max())
     if slope <= JUMP * max(abs(slopes[0]), abs(slopes[-1])):
         yield refined_place(within.solver, nearest, within.at(nearest), ds, test)

@@ -14,7 +14,7 @@ from periodic.correction.predictor import tangent
 from periodic.correction.solution import Solution
 from periodic.tracing.steps.leveltest import rate_of
 
-PLACE_PRECISION = 1e-8
+PLACE_PRECISION = 1e-7
 """Error of the place along the branch, in steps; that of the functional is about its square."""
 
 

@@ -10,7 +10,7 @@ import pytest
 from support.numpy_systems import LinearOscillator
 from support.surfaces import Surfaces
 
-from periodic.conditions.phase import _excited
+from periodic.conditions import phase as conditions
 from periodic.system import Kind
 from periodic.system.events import Surface, check_continuous
 
@@ -46,14 +46,14 @@ class Turning:
 def test_equations_that_depend_on_the_phase(shift: float, force: float, excited: bool) -> None:
     """Assert that a constant shift of an angle is no excitation, and a force is one, however small."""
     system: Any = Turning(shift, force)
-    assert _excited(system, np.zeros(0)) is excited
+    assert conditions.excited(system, np.zeros(0)) is excited
 
 
 def test_excitation_of_a_linear_oscillator() -> None:
     """Assert it with its force, and none without."""
-    assert _excited(LinearOscillator(), LinearOscillator().nominal)
+    assert conditions.excited(LinearOscillator(), LinearOscillator().nominal)
     free = LinearOscillator(F=0.0)
-    assert not _excited(free, free.nominal)
+    assert not conditions.excited(free, free.nominal)
 
 
 @pytest.mark.parametrize(
