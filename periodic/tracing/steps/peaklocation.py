@@ -21,11 +21,16 @@ from periodic.correction.solver import Solver
 from periodic.orbit.scheme import Array
 
 HALVED = 0.5
-"""Part of itself to which two orbits shorten the interval in which a slope vanishes, or it is halved: where
+"""Part of itself to which four orbits shorten the interval in which a slope vanishes, or it is halved: where
 the step is long beside a peak, as beside a grazing, polynomials do not predict it."""
 
+APART = 0.05
+"""Least distance, in lengths of that interval, of a further orbit from it through which a polynomial is laid:
+nearer ones say little more, and their rounding counts as the inverse of its fourth power."""
+
 ROUNDED = 1e-9
-"""Imaginary part up to which a root of a polynomial is real."""
+"""Imaginary part up to which a root of a polynomial is real, and part of its largest coefficient up to which
+its last ones are none."""
 
 JUMP = 1e-3
 """Largest slope at its zero, in parts of the larger one at the ends of the step: else it jumps."""
@@ -63,7 +68,7 @@ def peaks(
 
 def _peak(within: WithinStep, output: int, test: TestFunction, ds: float) -> Iterator[Found]:
     """Yield the point of one output, if its slope vanishes."""
-    precision, lengths = test.precision * ds, [np.inf, np.inf]
+    precision, lengths = test.precision * ds, [np.inf] * 4
     while True:
         places, values, slopes = _known(within, output)
         (turns,) = np.nonzero(slopes[:-1] * slopes[1:] <= 0)
@@ -75,7 +80,7 @@ def _peak(within: WithinStep, output: int, test: TestFunction, ds: float) -> Ite
         nearest = float(places[np.abs(places - place).argmin()])
         if abs(place - nearest) <= precision or high - low <= precision:
             break
-        slow = high - low > HALVED * lengths[-2]
+        slow = high - low > HALVED * lengths[-4]
         lengths.append(high - low)
         within.at(float(low + high) / 2 if slow else place)
     slope = float(np.abs(slopes[places == nearest]).max())
@@ -109,13 +114,14 @@ def _vertex(places: Array, values: Array, slopes: Array, turn: int) -> float:
     length = high - low
     t, step = (places - low) / length, length * slopes
     away = np.abs(t - 0.5) - 0.5
-    others = np.flatnonzero(away >= HALVED)
+    others = np.flatnonzero(away >= APART)
     chosen = [turn, turn + 1, *others[away[others].argsort()[:1]]]
     powers = np.arange(2 * len(chosen))
     rows = [t[chosen, None] ** powers, powers * t[chosen, None] ** np.maximum(powers - 1, 0)]
     known = np.concatenate([values[chosen] - values[turn], step[chosen]])
     derivative = np.polynomial.Polynomial(np.linalg.solve(np.vstack(rows), known)).deriv()
-    roots = np.asarray(derivative.roots(), dtype=np.complex128)
+    short = derivative.trim(ROUNDED * float(np.abs(derivative.coef).max()))
+    roots = np.asarray(short.roots(), dtype=np.complex128)
     inside = roots.real[(np.abs(roots.imag) < ROUNDED) & (roots.real > 0) & (roots.real < 1)]
     return float(
         low + length * (inside[0] if len(inside) == 1 else step[turn] / (step[turn] - step[turn + 1]))
