@@ -21,7 +21,6 @@ from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.measured import measured
 from periodic.correction.solution import Solution
 from periodic.orbit.scheme import Array
-from periodic.results.betweenpoints import lengths
 from periodic.results.point import Point
 
 PART = 1e-2
@@ -149,16 +148,13 @@ class WatchedSwings:
         return None
 
     def _between(self, a: Point, b: Point) -> float:
-        """The arclength between two points, from the parameter and the output that moves most."""
-        if a.parameter == b.parameter and a.orbit is b.orbit:
-            return 0.0
-        ends = self._at(a), self._at(b)
-        k = int(np.abs(ends[1][0] - ends[0][0]).argmax())
-        x, x_slope = np.array([a.parameter, b.parameter]), np.array([a.slope, b.slope])
-        y, y_slope = (np.array([end[row][k] for end in ends]) for row in (0, 1))
-        if (x[0], y[0]) == (x[1], y[1]):
-            return 0.0
-        return float(lengths(x, y, x_slope, y_slope)[0])
+        """The arclength between two points, by the trapezoidal rule, of what moves most evenly."""
+        begin, end = (np.column_stack([[p.parameter, p.slope], self._at(p)]) for p in (a, b))
+        way, both = end[0] - begin[0], begin[1] + end[1]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            bend = np.nan_to_num(np.abs((end[1] - begin[1]) / both), nan=np.inf)
+            even = int(bend.argmin())
+            return float(2 * way[even] / both[even]) if way.any() else 0.0
 
     def _at(self, point: Point) -> Array:
         """Values and slopes of a point, shape (2, outputs watched)."""

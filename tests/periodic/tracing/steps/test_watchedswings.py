@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from support.drawn.machines.drawn import machine
 
 import periodic as per
 import symbolic as sym
+from periodic.tracing.steps import watchedswings
 from periodic.tracing.steps.watchedswings import WatchedSwings, _continued
 
 
@@ -157,3 +160,92 @@ def test_files_keep_slopes(tmp_path: object) -> None:
     straight, exact = old.curve("x p-p"), branch.curve("x p-p")
     assert np.abs(straight[1] - np.interp(straight[0], branch.values, branch.peak_to_peak("x"))).max() < 1e-12
     assert not np.allclose(straight[1], exact[1], rtol=1e-3)
+
+
+class Made(SimpleNamespace):
+    """A point of a branch with peak to peak s + b s^4 at the arclength s, which is the parameter too."""
+
+    def __init__(self, s: float, b: float, label: str = "", equilibrium: bool = False) -> None:
+        value, slope = s + b * s**4, 1 + 4 * b * s**3
+        super().__init__(
+            parameter=s,
+            slope=1.0,
+            label=per.Label(label),
+            equilibrium=equilibrium,
+            orbit=SimpleNamespace(equilibrium=equilibrium),
+            minimum={"x": 0.0},
+            maximum={"x": value},
+            minimum_slope={"x": 0.0},
+            maximum_slope={"x": slope},
+            found=SimpleNamespace(peak_to_peak=np.array([value]), peak_to_peak_slope=np.array([slope])),
+            problem=SimpleNamespace(full=SimpleNamespace(outputs=[SimpleNamespace(name="x")])),
+        )
+
+
+@pytest.fixture
+def watched(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """The output x, to a tolerance of 1e-6, of made points."""
+    monkeypatch.setattr(watchedswings, "measured", lambda solution: solution.found)
+    test: Any = object()
+    return WatchedSwings({"x": test}, 1e-6, {"x": 1e-3})
+
+
+@pytest.mark.parametrize(("before", "length"), [(1.0, 1.0), (0.6, 1.0), (2.0, 0.5)])
+def test_error_of_the_cubic_by_hand(before: float, length: float, watched: Any) -> None:
+    """Assert m'''' h^4/384 over 1 % of the range, to the fourth root, however long the step before was."""
+    b, s = 1e-4, 3.0
+    behind = [Made(s - before, b), Made(s, b)]
+    range_ = Made(s + length, b).maximum["x"] - behind[0].maximum["x"]
+    allowed = 0.01 * range_ + 1e-6 * Made(s + length, b).maximum["x"]
+    expected = (24 * b * length**4 / 384 / allowed) ** 0.25
+    assert watched.ratio(behind, Made(s + length, b), length) == pytest.approx(expected, rel=5e-3)
+
+
+def test_range_is_that_of_the_whole_branch(watched: Any) -> None:
+    """Assert that it counts points long gone, and not those of a branch that is cut back."""
+    b, new = 1e-4, Made(4.0, 1e-4)
+    near = [Made(2.0, b), Made(3.0, b)]
+    few, many = watched.ratio(near, new, 1.0), watched.ratio([*near, Made(-9.0, b), *near], new, 1.0)
+    ranges = [new.maximum["x"] - low.maximum["x"] for low in (near[0], Made(-9.0, b))]
+    assert few / many == pytest.approx((ranges[1] / ranges[0]) ** 0.25, rel=1e-3)
+    assert watched.ratio(near, new, 1.0) == few
+
+
+@pytest.mark.parametrize(
+    "behind",
+    [
+        [Made(3.0, 0.1)],
+        [Made(2.8, 0.1), Made(3.0, 0.1)],
+        [Made(2.0, 0.1), Made(3.0, 0.1, "GR")],
+        [Made(2.0, 0.1, "GR"), Made(3.0, 0.1)],
+        [Made(2.0, 0.1, equilibrium=True), Made(3.0, 0.1)],
+    ],
+    ids=["first", "too short", "grazing", "behind a grazing", "rest"],
+)
+def test_nothing_tells(behind: Any, watched: Any) -> None:
+    """Assert no bound where no cubic can be continued over the step."""
+    assert watched.ratio(behind, Made(4.0, 0.1), 1.0) == 0.0
+
+
+def test_points_within_the_step_before_are_passed(watched: Any) -> None:
+    """Assert that what is continued begins at least half a step behind, whatever lies between."""
+    b = 1e-4
+    plain, more = [Made(2.0, b), Made(3.0, b)], [Made(2.0, b), Made(2.9, b, "UZ"), Made(3.0, b)]
+    new = Made(4.0, b)
+    assert watched.ratio(more, new, 1.0) == pytest.approx(watched.ratio(plain, new, 1.0), rel=1e-3)
+
+
+def test_slopes_of_opposite_signs_tell_a_peak(watched: Any) -> None:
+    """Assert it of those that exceed the error over the step, with the index of the output."""
+    point, end = Made(0.0, 0.0), Made(1.0, 0.0)
+    assert watched.stationary(point, end, 0.1) == {}
+    end.found.peak_to_peak_slope[:] = -1.0
+    assert [*watched.stationary(point, end, 0.1)] == [0]
+    end.found.peak_to_peak_slope[:] = -0.9e-5  # over the step as little as the error, 1e-6 of 1
+    assert watched.stationary(point, end, 0.1) == {}
+    end.found.peak_to_peak_slope[:] = -1.1e-5
+    assert [*watched.stationary(point, end, 0.1)] == [0]
+    end.found.peak_to_peak[:] = 0.0
+    end.found.peak_to_peak_slope[:] = -1.1e-8  # of what is at rest below 1e-3
+    assert [*watched.stationary(point, end, 0.1)] == [0]
+    assert watched.stationary(Made(0.0, 0.0, equilibrium=True), end, 0.1) == {}
