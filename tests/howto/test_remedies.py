@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support.flows import van_der_pol
 
 import periodic as per
 import symbolic as sym
@@ -140,12 +139,3 @@ def test_bounds_on_the_work_are_raised() -> None:
     resumed = per.trace(bent, "Omega", (0.5, 2.0), guess=short)
     assert resumed.stop.reason is per.Reason.BOUND
     assert resumed.values == pytest.approx(whole.values, rel=1e-12)
-
-
-def test_free_oscillations_have_a_phase_condition() -> None:
-    """Assert what is said of them without one, and van der Pol's branch with it."""
-    system, motion = van_der_pol(1.0), van_der_pol(1.0).simulated([2.0, 0.0], 100.0, crossing=0)
-    loose = per.trace(system, "mu", (1.0, 2.0), guess=motion, control=FEW)
-    assert "determined={'omega': PhaseCondition()} alone determines the period" in loose.stop.detail
-    found = per.trace(system, "mu", (1.0, 2.0), guess=motion, determined={"omega": per.PhaseCondition()})
-    assert found.stop.reason is per.Reason.BOUND
