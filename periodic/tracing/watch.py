@@ -181,7 +181,7 @@ class Watch:
         return found
 
     def check(self, system: System, orbit: Orbit) -> None:
-        """Check that an orbit to start from lies within the limits.
+        """Check that an orbit to start from lies within the limits, and that peaks to stop at are watched.
 
         Parameters
         ----------
@@ -193,8 +193,13 @@ class Watch:
         Raises
         ------
         ValueError
-            If it lies outside.
+            If it lies outside, and for a peak that is none.
         """
+        usual = usual_peaks(layout_of(system)) if self.peaks is None else {}
+        for name in self.stop:
+            if name.startswith(PEAK_OF) and name not in (*self.events, *self.asked, *usual):
+                among = ", ".join(usual) or "none"
+                raise ValueError(f"stop has {name!r}; the peaks that are watched are {among}")
         for name, (low, high) in self.limits.items():
             value = float(orbit.parameter[index_of(system, name)])
             if not low - slack(low) <= value <= high + slack(high):

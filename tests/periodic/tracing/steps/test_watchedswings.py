@@ -249,3 +249,14 @@ def test_slopes_of_opposite_signs_tell_a_peak(watched: Any) -> None:
     end.found.peak_to_peak_slope[:] = -1.1e-8  # of what is at rest below 1e-3
     assert [*watched.stationary(point, end, 0.1)] == [0]
     assert watched.stationary(Made(0.0, 0.0, equilibrium=True), end, 0.1) == {}
+
+
+def test_branch_ends_at_a_usual_peak() -> None:
+    """Assert that `stop` knows the peaks that are watched unasked, and refuses others by name."""
+    system = oscillator(0.1)
+    branch = per.trace(system, "Omega", (0.5, 1.5), watch=per.Watch(stop={"peak of x": 1}))
+    assert branch[-1].event == "peak of x"
+    with pytest.raises(ValueError, match="^stop has 'peak of y'; the peaks that are watched are peak of x$"):
+        per.trace(system, "Omega", (0.5, 1.5), watch=per.Watch(stop={"peak of y": 1}))
+    with pytest.raises(ValueError, match="^stop has 'peak of x'; the peaks that are watched are none$"):
+        per.trace(system, "Omega", (0.5, 1.5), watch=per.Watch(peaks={}, stop={"peak of x": 1}))
