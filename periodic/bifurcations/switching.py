@@ -73,7 +73,7 @@ def doubled(
     """
     orbit = as_read_by(system, orbit).collocated()
     if not any(condition.trivial for condition in (determined or {}).values()):
-        _check_excited(system, orbit)
+        _check_excited(system, orbit, parameter)
     once = away(system, orbit, -1, autonomous=False)
     twice = repeated(orbit, 2)
     nodes = np.concatenate([once.nodes[:-1], -once.nodes])
@@ -88,9 +88,9 @@ def doubled(
     return switched(system, twice, direction, parameter, determined or {}, distance)
 
 
-def _check_excited(system: System, orbit: Orbit) -> None:
+def _check_excited(system: System, orbit: Orbit, parameter: str) -> None:
     """Raise ValueError where the equations leave phase and period of an orbit open."""
-    if not orbit.equilibrium and (why := open_phase(system, orbit.parameter)):
+    if not orbit.equilibrium and (why := open_phase(system, orbit.parameter, parameter)):
         raise ValueError(f"determined has no phase condition: {why}")
 
 

@@ -83,7 +83,7 @@ class _Phase:
         return Row(float(value), weighted, outer)
 
 
-def open_phase(system: System, parameter: Array) -> str:
+def open_phase(system: System, parameter: Array, continued: str) -> str:
     """Return why nothing determines the period of orbits without a phase condition; empty if something does.
 
     Parameters
@@ -92,6 +92,8 @@ def open_phase(system: System, parameter: Array) -> str:
         The equations.
     parameter : Array
         Parameters in SI units, shape (p,).
+    continued : str
+        The parameter that is continued in: orbits of given frequencies, as of a family, are no mistake.
 
     Returns
     -------
@@ -99,7 +101,7 @@ def open_phase(system: System, parameter: Array) -> str:
         A clause that says which condition there is for it.
     """
     names = layout_of(system).frequency
-    if len(names) != 1 or excited(system, parameter):
+    if len(names) != 1 or continued in names or excited(system, parameter):
         return ""
     return (
         f"the system is not excited, and determined={{{names[0]!r}: PhaseCondition()}} alone determines the "

@@ -139,7 +139,8 @@ class Start:
         method, system = self.solver.discretisation, problem.system
         held = ""
         if not (problem.autonomous or method.stability is Stability.EIGENVALUES):
-            held = "".join(f"; {why}" for why in (open_phase(system, parameter),) if why)
+            why = open_phase(system, parameter, problem.parameter)
+            held = f"; {why}" if why else ""
         if not self.tried:
             return outcome.value + held
         free = [] if problem.autonomous else method.drifting(system, parameter)

@@ -217,7 +217,7 @@ def test_doubled_direction_of_an_orbit_with_event_nodes(monkeypatch: pytest.Monk
     monkeypatch.setattr(switching, "away", lambda system, orbit, sign, autonomous: once)
     monkeypatch.setattr(switching, "switched", switched)
     monkeypatch.setattr(switching, "as_read_by", lambda system, orbit: orbit)
-    monkeypatch.setattr(switching, "open_phase", lambda system, parameter: "")
+    monkeypatch.setattr(switching, "open_phase", lambda system, values, parameter: "")
     switching.doubled(None, orbit, "Omega", distance=0.5)  # type: ignore[arg-type]
     twice, direction = asked["twice"], asked["direction"]
     assert direction.phases.tolist() == [0.0] * len(twice.phases) and len(twice.phases) == 4

@@ -351,8 +351,9 @@ def test_loose_tolerance(own: float, least: float, found: float) -> None:
     assert Start._loosely(solver, least).tolerance.orbit == found  # type: ignore[arg-type]
 
 
-def test_what_was_tried_is_told() -> None:
+def test_what_was_tried_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert the outcome alone where nothing else was tried, else what nothing holds, and what was tried."""
+    monkeypatch.setattr(start, "open_phase", lambda system, values, parameter: "")
     own = Start(Solving(discretisation=method()), nowhere)  # type: ignore[arg-type]
     assert own.why_not(Outcome.SINGULAR, np.zeros(2)) == Outcome.SINGULAR.value
     own.tried = ["rest", "a simulation"]
@@ -363,6 +364,9 @@ def test_what_was_tried_is_told() -> None:
     free = Start(Solving(discretisation=method(), problem=Problem(autonomous=True)), nowhere)  # type: ignore[arg-type]
     free.tried = ["rest"]
     assert "nothing holds" not in free.why_not(Outcome.SINGULAR, np.zeros(2))
+    monkeypatch.setattr(start, "open_phase", lambda system, values, parameter: f"{parameter} is free")
+    own.tried = []
+    assert own.why_not(Outcome.SINGULAR, np.zeros(2)) == f"{Outcome.SINGULAR.value}; p is free"
 
 
 @pytest.mark.parametrize("tried", [[], ["rest", "a simulation"]])
