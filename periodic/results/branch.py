@@ -300,6 +300,8 @@ class Branch(Record):
     def table(self) -> str:
         """Return one line per point: label, parameter, peak to peak of each output, largest multiplier.
 
+        A peak's label has the output that it is of.
+
         Of equilibria the outputs themselves and the largest real part of the eigenvalues (1/s).
 
         Returns
@@ -362,4 +364,7 @@ def _cells(point: Point, names: list[str]) -> list[str]:
     largest = point.multipliers.real if point.equilibrium else np.abs(point.multipliers)
     size = f"{largest.max():.9f}"
     stable = "yes" if point.stable else "no"
-    return [point.label.value, f"{point.parameter:.12g}", *ripple, size, stable, f"{point.error.worst:.1e}"]
+    label = point.label.value
+    if point.label is Label.PEAK:
+        label += f" {point.event.removeprefix(PEAK_OF)}"
+    return [label, f"{point.parameter:.12g}", *ripple, size, stable, f"{point.error.worst:.1e}"]
