@@ -16,6 +16,10 @@ from periodic.orbit.scheme import Array
 ARCLENGTH_STEP = 1e-4
 """Arclength of the central difference that stands for a derivative along the branch."""
 
+VERTEX = 3e-4
+"""Distance (rad) from each other of three phases whose parabola tells where an output is stationary,
+to about its square, and to rounding over it."""
+
 
 @dataclass(frozen=True)
 class Measured:
@@ -65,8 +69,7 @@ def measured(solution: Solution) -> Measured:
 def _measured(solution: Solution) -> Measured:
     problem, orbit = solution.problem, solution.problem.expand(solution.orbit)
     found = extrema(problem.full, orbit)
-    phases = np.concatenate([found.minimum_phase, found.maximum_phase])
-    where = orbit.locate(phases)
+    where = orbit.locate(_stationary(solution, orbit, found))
     ahead, behind = (
         _values(solution, problem.expand(tangent(problem, solution, side * ARCLENGTH_STEP)), where)
         for side in (1, -1)
@@ -74,6 +77,28 @@ def _measured(solution: Solution) -> Measured:
     slopes = (ahead - behind) / (2 * ARCLENGTH_STEP)
     count = len(found.minimum)
     return Measured(found, slopes[:count], slopes[count:])
+
+
+def _stationary(solution: Solution, orbit: Orbit, found: Extremes) -> Array:
+    """The phases of the extremes, those of the minima first, to what slopes along the branch need.
+
+    Values are right to second order where phases are to the first, slopes are not: each phase is that of the
+    vertex of the parabola about it, but beside an event, where the extreme may be a corner.
+    """
+    phases = np.concatenate([found.minimum_phase, found.maximum_phase])
+    if orbit.equilibrium:
+        return phases
+    count = len(found.minimum)
+    at = phases[:, None] + VERTEX * np.array([-1.0, 0.0, 1.0])
+    each = outputs(solution.problem.full, orbit, at.ravel()).reshape(2 * count, 3, count)
+    low, middle, high = each[np.arange(2 * count), :, np.tile(np.arange(count), 2)].T
+    bend = low - 2 * middle + high
+    with np.errstate(invalid="ignore", divide="ignore"):
+        later = np.where(bend != 0, (low - high) / (2 * bend), 0.0)
+    half = orbit.mesh.period / 2
+    away = np.abs((phases[:, None] - orbit.phases + half) % orbit.mesh.period - half)
+    smooth = (np.abs(later) < 1) & (away > 2 * VERTEX).all(axis=1)
+    return np.where(smooth, phases + VERTEX * later, phases)
 
 
 def _values(solution: Solution, moved: Orbit, where: tuple[NDArray[np.int_], Array]) -> Array:
