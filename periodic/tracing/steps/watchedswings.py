@@ -157,9 +157,10 @@ class WatchedSwings:
             return float(2 * way[even] / both[even]) if way.any() else 0.0
 
     def _at(self, point: Point) -> Array:
-        """Values and slopes of a point, shape (2, outputs watched)."""
+        """Values and slopes of a point, shape (2, outputs watched); NaN where a file has no slopes."""
+        rising, falling = point.maximum_slope, point.minimum_slope
         pairs = [
-            (point.maximum[o] - point.minimum[o], point.maximum_slope[o] - point.minimum_slope[o])
+            (point.maximum[o] - point.minimum[o], rising.get(o, np.nan) - falling.get(o, np.nan))
             for o in self.tests
         ]
         return np.array(pairs, dtype=float).reshape(-1, 2).T

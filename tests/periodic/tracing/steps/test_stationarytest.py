@@ -130,7 +130,9 @@ def test_branch_of_a_file_that_is_older_than_peaks() -> None:
     """Assert that it is taken up, where none are asked for, and not where some are."""
     system, few = oscillator(0.1), per.ArclengthControl(max_points=2)
     branch = per.trace(system, "Omega", (1.2, 1.5), control=few)
-    older = replace(branch, made={name: value for name, value in branch.made.items() if name != "peaks"})
+    points = tuple(replace(p, minimum_slope={}, maximum_slope={}) for p in branch.points)
+    made = {name: value for name, value in branch.made.items() if name != "peaks"}
+    older = replace(branch, points=points, made=made)
     assert per.trace(system, "Omega", (1.2, 1.5), guess=older).stop.reason is per.Reason.BOUND
     with pytest.raises(per.ResumeError, match="peaks"):
         watch = per.Watch(peaks={"resonance": per.PeakToPeak("x")})
