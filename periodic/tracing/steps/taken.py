@@ -122,13 +122,12 @@ class Steps:
                 tried = self._stepper.step(base, ds)
                 base, new, length = tried.base, tried.new, tried.ds
                 final = tried.change is not None and tried.change.change.final
-                bend = self._bend(behind, new, length)
+                self._check_measures(behind, new, length)
                 found = special_points(self.solver, base, new, length, replace(sought, final=final))
                 found = self._with_peaks(behind[-1], base, new, length, found)
                 self._check_balance(origin, new, found, length)
                 further = min(
-                    control.next_size(length, new.correction.iterations, max(tried.bound_ratio, bend)),
-                    longest,
+                    control.next_size(length, new.correction.iterations, tried.bound_ratio), longest
                 )
                 return Step(new, further, found, self._course(base, length), tried.change, ds)
             except RejectedError as rejected:
@@ -154,29 +153,31 @@ class Steps:
             return None
         return Step(at.end, self.control.ds, [], self._course(base, at.ds), at, self.control.ds)
 
-    def _bend(self, behind: Sequence[Point], new: Solution, ds: float) -> float:
-        """How long a step is to one that watched measures allow. Raises RejectedError if it is too long."""
+    def _check_measures(self, behind: Sequence[Point], new: Solution, ds: float) -> None:
+        """Reject a step longer than watched measures allow, unless it is short already."""
         ratio = self.swings.ratio(behind, new, ds)
         if ratio > 1 and ds > NEARLY * self.control.ds:
             raise RejectedError("a measure bends too much for the step", self.control.shorter(ratio))
-        return ratio
 
     def _with_peaks(
         self, before: Point, base: Solution, new: Solution, ds: float, found: list[Found]
     ) -> list[Found]:
         """The special points of a step with those at which a watched measure is stationary.
 
-        Where they cannot be located the step is rejected, unless it is short already.
+        Where they cannot be located the step is rejected, unless it is short already. One that would be known
+        worse than the tolerance and the step's end, as so near a grazing that rounding counts, is left out.
         """
         tests = self.swings.stationary(before, new, ds)
         if not tests or any(point.shrunk for point in found):
             return found
         try:
-            return with_peaks(found, peaks(self.solver, base, new, ds, tests))
+            located = peaks(self.solver, base, new, ds, tests)
         except RejectedError:
             if ds > NEARLY * self.control.ds:
                 raise
             return found
+        worst = max(self.solver.tolerance.orbit, new.error.worst)
+        return with_peaks(found, [peak for peak in located if peak.solution.error.worst <= worst])
 
     def _over_changes(self, base: Solution, ds: float, sought: Sought, before: Point) -> Step | None:
         """A step in which the word changes and nothing is to be located, if it is one."""

@@ -54,7 +54,7 @@ def test_hertzian_contact_needs_few_intervals(ratio: float) -> None:
     The error goes with h^1.5 there, as d'' of the force does not exist: it is 1.5 times its estimate.
     """
     places = (300.0, 220.0)
-    coarse, fine = (disc("dry-810N", tol, at=places, ds=0.025, ratio=ratio) for tol in (1e-6, 1e-9))
+    coarse, fine = (disc("dry-810N", tol, at=places, ratio=ratio) for tol in (1e-6, 1e-9))
     assert max(point.orbit.mesh.ntst for point in coarse) <= 70
     for rpm in places:
         both = zip(user_points(coarse, rpm * RPM), user_points(fine, rpm * RPM), strict=True)
