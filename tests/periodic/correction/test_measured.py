@@ -23,15 +23,15 @@ def solutions(system: sym.CompiledSystem, parameter: str, bounds: tuple[float, f
 
 @pytest.mark.parametrize("scene", ["duffing", "gear-pair"])
 def test_slopes_are_those_of_the_functionals(scene: str) -> None:
-    """Assert d maximum and d minimum / d arclength to 1e-6 of the larger one and rounding, of each output."""
+    """Assert d maximum and d minimum / d arclength to 1e-6 of the larger one, or to 1e-10, of each output."""
     system = sym.scene(scene)
     for solution in solutions(system, "Omega", (0.5, 1.2)):
         found = measured(solution)
         for k, output in enumerate(system.outputs):
             slopes = found.minimum_slope[k], found.maximum_slope[k]
             exact = [rate_of(kind(output.name))(solution) for kind in (per.Minimum, per.Maximum)]
-            assert slopes == pytest.approx(exact, abs=1e-6 * max(map(abs, exact)) + 1e-11)
-            assert found.peak_to_peak_slope[k] == pytest.approx(exact[1] - exact[0], rel=1e-5, abs=1e-11)
+            assert slopes == pytest.approx(exact, abs=1e-6 * max(map(abs, exact)) + 1e-10)
+            assert found.peak_to_peak_slope[k] == pytest.approx(exact[1] - exact[0], rel=1e-5, abs=1e-10)
         assert measured(solution) is found
 
 
