@@ -195,9 +195,11 @@ class Watch:
         ValueError
             If it lies outside, and for a peak that is none.
         """
-        usual = usual_peaks(layout_of(system)) if self.peaks is None else {}
         for name in self.stop:
-            if name.startswith(PEAK_OF) and name not in (*self.events, *self.asked, *usual):
+            if name in (*self.events, *self.asked) or not name.startswith(PEAK_OF):
+                continue
+            usual = usual_peaks(layout_of(system)) if self.peaks is None else {}
+            if name not in usual:
                 among = ", ".join(usual) or "none"
                 raise ValueError(f"stop has {name!r}; the peaks that are watched are {among}")
         for name, (low, high) in self.limits.items():

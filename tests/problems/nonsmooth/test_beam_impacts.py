@@ -137,7 +137,7 @@ def test_few_impacts() -> None:
     Beyond it they fall as its distance grows: they are known as well as to 1e-13 of that.
     """
     beam = Beam(2, 0.9, light=True)
-    branch = beam.traced(3.497, 3.5, 3.4975, tol=1e-8)
+    branch = beam.traced(3.497, 3.5, 3.4975, tol=1e-8, watch=per.Watch(peaks={}))
     (grazing,) = branch.labelled(Label.GRAZING)
     assert grazing.parameter == pytest.approx(3.4982075, abs=1e-7)
     assert {len(point.orbit.phases) for point in branch} == {2, 3}

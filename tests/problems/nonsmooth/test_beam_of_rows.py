@@ -87,8 +87,9 @@ def test_free_flight_only_shows_the_motion() -> None:
     of their powers: two of them, .04 from each other, are each off by more. Rounding decides how far
     below the tolerance it is: 1e-8 to 5e-7.
     """
-    begun = per.trace(system(), "W", (3.645, 3.66), start=3.66)
-    branch = per.trace(system(), "W", (3.645, 3.66), start=3.66, guess=begun[-1].orbit)
+    plain = per.Watch(peaks={})
+    begun = per.trace(system(), "W", (3.645, 3.66), start=3.66, watch=plain)
+    branch = per.trace(system(), "W", (3.645, 3.66), start=3.66, guess=begun[-1].orbit, watch=plain)
     assert [p.label for p in branch.special_points] == [per.Label.END, "LP", "GR", per.Label.END]
     beside = [p for p in branch if p.orbit.mesh.segment_lengths(p.orbit.phases).min() < 0.02]
     assert len(beside) >= 4
