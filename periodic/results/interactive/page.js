@@ -9,11 +9,12 @@ function signal(point, k) { const at = (point * many + k) * samples; return orbi
 function closed(values) { return [...values, values[0]]; }
 
 function frame(x, y, more) {
-  const axis = title => ({ title: { text: plain(title), standoff: 8 }, gridcolor: colour("--line"),
-    zerolinecolor: colour("--line"), linecolor: colour("--line"), automargin: true });
+  // Each axis moves its own margin alone: with one that its last number moves too the other may never settle.
+  const axis = (title, side) => ({ title: { text: plain(title), standoff: 8 }, gridcolor: colour("--line"),
+    zerolinecolor: colour("--line"), linecolor: colour("--line"), automargin: side });
   return Object.assign({ margin: { l: 60, r: 14, t: 34, b: 46 }, paper_bgcolor: colour("--paper"),
     plot_bgcolor: colour("--paper"), font: { color: colour("--ink"), size: 12 }, showlegend: false,
-    hovermode: "closest", xaxis: axis(x), yaxis: axis(y) }, more);
+    hovermode: "closest", xaxis: axis(x, "bottom"), yaxis: axis(y, "left") }, more);
 }
 
 function stretches() {
