@@ -13,12 +13,16 @@ import numpy as np
 
 from periodic.bifurcations.label import Label
 from periodic.orbit.scheme import Array
+from periodic.results.peaks import PEAK_OF
 from periodic.results.point import Point
 from periodic.system.precision import SMALLEST
 
 PER_SEGMENT = 8
 """Parts into which the way between two points is cut."""
 
+CORNER = 1e-3
+"""Largest slope at a smooth peak, found to 1e-7 of a step, in parts of the larger one of its neighbours. At a
+corner, where another of two maxima of a motion becomes the greater, the slope jumps."""
 
 WEIGHTS = {"min": (1.0, 0.0), "max": (0.0, 1.0), "p-p": (-1.0, 1.0)}
 """What measures of an output are made of: parts of its least and of its greatest value."""
@@ -37,8 +41,9 @@ def slopes_of(points: Sequence[Point], column: str) -> tuple[Array, Array] | Non
     Returns
     -------
     tuple of Array or None
-        Derivatives in arclength, shape (points,) each; NaN where they are not known, and where an event is
-        grazed: there they are others on either side. None of another column.
+        Derivatives in arclength, shape (points,) each; NaN where they are not known, and where they are
+        others on either side: where an event is grazed, and, that of the column, at corners. None of another
+        column.
     """
     output, _, measure = column.rpartition(" ")
     if measure not in WEIGHTS:
@@ -52,7 +57,16 @@ def slopes_of(points: Sequence[Point], column: str) -> tuple[Array, Array] | Non
     ]
     found = np.array(known, dtype=float).reshape(-1, 2)
     found[[p.label is Label.GRAZING for p in points]] = np.nan
+    found[_corners(points, output), 1] = np.nan
     return found[:, 0], found[:, 1]
+
+
+def _corners(points: Sequence[Point], output: str) -> list[int]:
+    """The indices of the peaks of an output at which the slope of its peak to peak jumps."""
+    name = PEAK_OF + output
+    slope = [abs(p.maximum_slope.get(output, np.nan) - p.minimum_slope.get(output, np.nan)) for p in points]
+    peaks = [k for k in range(1, len(points) - 1) if points[k].event == name]
+    return [k for k in peaks if slope[k] > CORNER * max(slope[k - 1], slope[k + 1])]
 
 
 def lengths(x: Array, y: Array, x_slope: Array, y_slope: Array) -> Array:

@@ -14,11 +14,11 @@ from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, Gap, counts, gaps
 from periodic.checks import one_of
 from periodic.correction.error import shortfall
-from periodic.orbit.layout import Layout
 from periodic.orbit.scheme import Array
 from periodic.results import frames, netcdf
 from periodic.results.betweenpoints import PER_SEGMENT, curve, slopes_of, smooth
 from periodic.results.branchoverview import branch_html
+from periodic.results.peaks import PEAK_OF, turning_grazings, usual_peaks
 from periodic.results.point import Point
 from periodic.results.record import Record
 from periodic.results.stop import Stop
@@ -30,16 +30,6 @@ if TYPE_CHECKING:
 
 INTRINSIC = ("PhaseCondition", "Conservative")
 """Conditions that every orbit meets. With others a branch is a curve, whose folds have no label."""
-
-
-PEAK_OF = "peak of "
-"""How the names of the peaks begin that a branch has by default."""
-
-
-def usual_peaks(layout: Layout) -> dict[str, str]:
-    """Return the outputs whose peak to peak is watched by default, by the names of their peaks."""
-    states = {state.name for state in layout.states}
-    return {PEAK_OF + output.name: output.name for output in layout.outputs if output.name in states}
 
 
 class Branch(Record):
@@ -138,9 +128,16 @@ class Branch(Record):
     def peaks(self) -> dict[str, tuple[Point, ...]]:
         """The points at which each measure is greatest or least along the branch, by the name of the peak.
 
-        By default the peak to peak of each coordinate x, as "peak of x"; else those of `Watch(peaks=)`.
+        By default the peak to peak of each coordinate x, as "peak of x", also at grazings, whose label is GR;
+        else those of `Watch(peaks=)`.
         """
-        return {name: self.labelled(name) for name in self._peak_names}
+        usual = usual_peaks(self.layout)
+        found = {}
+        for name in self._peak_names:
+            grazing = turning_grazings(self.points, usual[name]) if name in usual else ()
+            own = {id(point) for point in (*self.labelled(name), *grazing)}
+            found[name] = tuple(point for point in self.points if id(point) in own)
+        return found
 
     @property
     def _peak_names(self) -> tuple[str, ...]:

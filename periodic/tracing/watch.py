@@ -20,7 +20,7 @@ from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution
 from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import Orbit
-from periodic.results.branch import PEAK_OF, usual_peaks
+from periodic.results.peaks import PEAK_OF, usual_peaks
 from periodic.results.point import Point
 from periodic.system import System, index_of
 from periodic.tracing.steps.leveltest import called, finite, level_test

@@ -9,7 +9,8 @@ import numpy as np
 
 from periodic.checks import one_of
 from periodic.results import frames
-from periodic.results.branch import PEAK_OF, Branch
+from periodic.results.branch import Branch
+from periodic.results.peaks import PEAK_OF
 from periodic.results.plots.curve import draw_curve
 from periodic.results.plots.frame import dressed, fresh
 from periodic.results.plots.marks import mark

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from periodic.bifurcations.label import Label
-from periodic.results.branch import PEAK_OF
+from periodic.results.peaks import PEAK_OF
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

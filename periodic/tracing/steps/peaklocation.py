@@ -1,8 +1,12 @@
 """Where peak to peaks are stationary in a step: by Hermite's interpolation of all that is known within it.
 
 An orbit solved for within a step tells the peak to peaks of all outputs and their slopes. A polynomial
-through those of the nearest orbits predicts where a slope vanishes; once it predicts the same place with one
-more orbit, that orbit is the one sought. Peaks of several outputs at one resonance share what is known.
+through those of the nearest orbits predicts where a slope vanishes; once it predicts nearly the same place
+with one more orbit, the orbit there is the one sought. Peaks of several outputs at one resonance share what
+is known.
+
+Where another of two maxima of a motion becomes the greater, the slope jumps: that corner is a peak as well.
+No polynomial predicts it; the tangents of both ends meet there.
 """
 
 from __future__ import annotations
@@ -21,8 +25,8 @@ from periodic.correction.solver import Solver
 from periodic.orbit.scheme import Array
 
 HALVED = 0.5
-"""Part of itself to which four orbits shorten the interval in which a slope vanishes, or it is halved: where
-the step is long beside a peak, as beside a grazing, polynomials do not predict it."""
+"""Part of itself to which four orbits shorten the interval in which a slope changes sign, or its end tangents
+tell the next: where the step is long beside a peak, as beside a grazing, polynomials do not predict it."""
 
 APART = 0.05
 """Least distance, in lengths of that interval, of a further orbit from it through which a polynomial is laid:
@@ -30,10 +34,13 @@ nearer ones say little more, and their rounding counts as the inverse of its fou
 
 ROUNDED = 1e-9
 """Imaginary part up to which a root of a polynomial is real, and part of its largest coefficient up to which
-its last ones are none."""
+its last ones are none. Where values differ by less than this part of themselves, slopes alone tell."""
 
-JUMP = 1e-3
-"""Largest slope at its zero, in parts of the larger one at the ends of the step: else it jumps."""
+ALIKE = 1e-3
+"""Distance from a place predicted, in parts of the precision, up to which a known orbit is taken for it."""
+
+EDGE = 0.01
+"""Least distance from an end of it, in parts, at which both tangents may meet; else they tell nothing."""
 
 
 def peaks(
@@ -55,7 +62,7 @@ def peaks(
     Returns
     -------
     list of Found
-        None of an output whose slope jumps, as where one of two maxima takes over from the other.
+        Of each output one, or none where its slope has the same sign at both ends.
 
     Raises
     ------
@@ -78,14 +85,13 @@ def _peak(within: WithinStep, output: int, test: TestFunction, ds: float) -> Ite
         low, high = places[k], places[k + 1]
         place = _vertex(places, values, slopes, k)
         nearest = float(places[np.abs(places - place).argmin()])
-        if abs(place - nearest) <= precision or high - low <= precision:
+        if abs(nearest - place) <= precision or high - low <= precision:
             break
         slow = high - low > HALVED * lengths[-4]
         lengths.append(high - low)
-        within.at(float(low + high) / 2 if slow else place)
-    slope = float(np.abs(slopes[places == nearest]).max())
-    if slope <= JUMP * max(abs(slopes[0]), abs(slopes[-1])):
-        yield refined_place(within.solver, nearest, within.at(nearest), ds, test)
+        within.at(_corner(places, values, slopes, k) if slow else place)
+    at = nearest if abs(nearest - place) <= ALIKE * precision else place
+    yield refined_place(within.solver, at, within.at(at), ds, test)
 
 
 def _known(within: WithinStep, output: int) -> tuple[Array, Array, Array]:
@@ -113,6 +119,9 @@ def _vertex(places: Array, values: Array, slopes: Array, turn: int) -> float:
         return float(low if slopes[turn] == 0 else high)
     length = high - low
     t, step = (places - low) / length, length * slopes
+    chord = float(low + length * step[turn] / (step[turn] - step[turn + 1]))
+    if np.abs(step[turn : turn + 2]).max() <= ROUNDED * np.abs(values[turn : turn + 2]).max():
+        return chord
     away = np.abs(t - 0.5) - 0.5
     others = np.flatnonzero(away >= APART)
     chosen = [turn, turn + 1, *others[away[others].argsort()[:1]]]
@@ -123,6 +132,12 @@ def _vertex(places: Array, values: Array, slopes: Array, turn: int) -> float:
     short = derivative.trim(ROUNDED * float(np.abs(derivative.coef).max()))
     roots = np.asarray(short.roots(), dtype=np.complex128)
     inside = roots.real[(np.abs(roots.imag) < ROUNDED) & (roots.real > 0) & (roots.real < 1)]
-    return float(
-        low + length * (inside[0] if len(inside) == 1 else step[turn] / (step[turn] - step[turn + 1]))
-    )
+    return float(low + length * inside[0]) if len(inside) == 1 else chord
+
+
+def _corner(places: Array, values: Array, slopes: Array, turn: int) -> float:
+    """Where the tangents at `turn` and at the next place meet; midway where that is beside one of them."""
+    low, high = places[turn], places[turn + 1]
+    step = (high - low) * slopes[turn : turn + 2]
+    t = (values[turn + 1] - values[turn] - step[1]) / (step[0] - step[1])
+    return float(low + (high - low) * (t if EDGE < t < 1 - EDGE else 0.5))

@@ -155,9 +155,13 @@ class Steps:
 
     def _check_measures(self, behind: Sequence[Point], new: Solution, ds: float) -> None:
         """Reject a step longer than watched measures allow, unless it is short already."""
+        if ds <= NEARLY * self.control.ds:
+            return
         ratio = self.swings.ratio(behind, new, ds)
-        if ratio > 1 and ds > NEARLY * self.control.ds:
+        if ratio > 1:
             raise RejectedError("a measure bends too much for the step", self.control.shorter(ratio))
+        if self.swings.turns_twice(behind[-1], new, ds):
+            raise RejectedError("a measure has a peak and a trough in the step")
 
     def _with_peaks(
         self, before: Point, base: Solution, new: Solution, ds: float, found: list[Found]

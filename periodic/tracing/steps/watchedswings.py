@@ -93,6 +93,26 @@ class WatchedSwings:
         each = zip(rows, self.tests.values(), turned, strict=True)
         return {row: test for row, test, here in each if here}
 
+    def turns_twice(self, before: Point, new: Solution, ds: float) -> bool:
+        """Return whether one of them has a peak and a trough in a step, by its cubic.
+
+        Parameters
+        ----------
+        before, new, ds
+            As of `stationary`, which sees neither: the slopes have the same sign at both ends.
+
+        Returns
+        -------
+        bool
+            Whether the way between both exceeds the errors of the peak to peaks. Not told from a grazing,
+            where slopes are others on either side.
+        """
+        if not self.tests or before.equilibrium or new.orbit.equilibrium or before.label is Label.GRAZING:
+            return False
+        (a, a_slope), (b, b_slope) = self._at(before), self._ends(new)
+        back = _back(b - a, ds * a_slope, ds * b_slope)
+        return bool((back > 2 * self._noise(np.maximum(a, b))).any())
+
     def _noise(self, swing: Array) -> Array:
         """The errors that peak to peaks of a size may have."""
         return self.tolerance * np.maximum(swing, [self.least.get(output, 0.0) for output in self.tests])
@@ -184,3 +204,17 @@ def _continued(
     square, cube = 3 * way - 2 * first - last, first + last - 2 * way
     t = 1 + ds / length
     return a + t * (first + t * (square + t * cube)), (first + t * (2 * square + 3 * t * cube)) / length
+
+
+def _back(way: Array, first: Array, last: Array) -> Array:
+    """How far cubics with slopes of the same sign at 0 and 1 go back in between; 0 where they do not.
+
+    The slope first + 2 s t + 3 c t^2 has its roots r = 2 (s^2 - 3 c first)^(1/2)/(3 |c|) apart, between which
+    the cubic goes by |c| r^3/2.
+    """
+    square, cube = 3 * way - 2 * first - last, first + last - 2 * way
+    root = square**2 - 3 * cube * first
+    with np.errstate(invalid="ignore", divide="ignore"):
+        middle = -square / (3 * cube)
+        inside = (first * last > 0) & (first * cube > 0) & (root > 0) & (middle > 0) & (middle < 1)
+        return np.where(inside, 4 * np.abs(root) ** 1.5 / (27 * cube**2), 0.0)

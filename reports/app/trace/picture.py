@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from periodic.results.branch import PEAK_OF
+from periodic.results.peaks import PEAK_OF
 from periodic.results.plots.curve import draw_curve
 from periodic.results.plots.labels import placed
 from symbolic.scenes.schema import Scene

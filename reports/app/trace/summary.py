@@ -11,7 +11,7 @@ from platform import python_version
 from typing import TYPE_CHECKING, Any
 
 from periodic.bifurcations.label import Label
-from periodic.results.branch import PEAK_OF
+from periodic.results.peaks import PEAK_OF
 from periodic.results.textcell import text_cell
 from symbolic.scenes.schema import Scene
 

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
-from periodic.results.betweenpoints import cubics, curve, lengths, smooth
+import periodic as per
+from periodic.results.betweenpoints import cubics, curve, lengths, slopes_of, smooth
 
 
 def circle(count: int) -> tuple[np.ndarray, ...]:
@@ -67,6 +71,23 @@ def test_one_point_and_none() -> None:
     for count in (0, 1):
         one = np.arange(count, dtype=float)
         assert curve(one, one, one, one)[0].tolist() == one.tolist()
+
+
+def test_slope_is_unknown_at_a_corner_alone() -> None:
+    """Assert it where the slope at a peak is more than a thousandth of its neighbours', and at grazings."""
+
+    def point(slope: float, event: str = "", label: str = "") -> Any:
+        of = {"maximum": {"x": 1.0}, "minimum_slope": {"x": 0.0}, "maximum_slope": {"x": slope}}
+        return SimpleNamespace(slope=2.0, label=per.Label(label), event=event, **of)
+
+    smooth, corner, peak = 0.9e-3, 1.1e-3, "peak of x"
+    points = [point(0.5), point(corner, peak, "PK"), point(1.0), point(smooth, peak, "PK"), point(1.0)]
+    points += [point(0.9, "peak of y", "PK"), point(0.8), point(1.0, "", "GR")]
+    found = slopes_of(points, "x p-p")
+    assert found is not None
+    unknown = np.isnan(found)
+    assert unknown[0].tolist() == [k == 7 for k in range(8)]
+    assert unknown[1].tolist() == [k in (1, 7) for k in range(8)]
 
 
 def test_points_without_slopes() -> None:

@@ -12,7 +12,7 @@ import pytest
 from periodic.bifurcations import testfunction
 from periodic.bifurcations.label import Label
 from periodic.tracing.steps import peaklocation
-from periodic.tracing.steps.peaklocation import _peak, _vertex
+from periodic.tracing.steps.peaklocation import _corner, _peak, _vertex
 
 Values = Callable[[float], tuple[float, float]]
 """A function and its derivative at a place."""
@@ -72,7 +72,7 @@ def test_peak_of_a_resonance(length: float, located: Any) -> None:
 
 
 def test_peak_that_polynomials_do_not_predict(located: Any) -> None:
-    """Assert the place where the slope falls within 1e-3 of the step: the interval is halved there."""
+    """Assert the place where the slope falls within 1e-3 of the step, by its end tangents."""
 
     def values(s: float) -> tuple[float, float]:
         return -float(np.logaddexp((s - 0.61) / 1e-3, -(s - 0.61) / 1e-3)), -1e3 * np.tanh((s - 0.61) / 1e-3)
@@ -81,10 +81,22 @@ def test_peak_that_polynomials_do_not_predict(located: Any) -> None:
     assert place == pytest.approx(0.61, abs=1e-7) and orbits < 40
 
 
-def test_corner_is_no_peak(located: Any) -> None:
-    """Assert none where the slope jumps, found out in as many halvings as the precision has bits, twice."""
-    found, orbits = located(lambda s: (-abs(s - 0.37), -np.sign(s - 0.37)), 1.0)
-    assert found == [] and orbits <= 50
+@pytest.mark.parametrize("bend", [0.0, 0.3, -2.0])
+def test_corner_is_a_peak(bend: float, located: Any) -> None:
+    """Assert the place where the slope jumps, in fewer orbits than 1e-7 has bits."""
+
+    def values(s: float) -> tuple[float, float]:
+        return -abs(s - 0.37) + bend * (s - 0.37) ** 3, -np.sign(s - 0.37) + 3 * bend * (s - 0.37) ** 2
+
+    (place,), orbits = located(values, 0.6)
+    assert place == pytest.approx(0.37, abs=1e-7) and orbits <= 15
+
+
+@pytest.mark.parametrize(("slopes", "expected"), [([1.0, -3.0], 2.75), ([1e-3, -3.0], 2.5)])
+def test_tangents_meet(slopes: list[float], expected: float) -> None:
+    """Assert the place by hand; midway where it is within a hundredth of an end."""
+    places, values = np.array([2.0, 3.0]), np.array([0.0, 0.0])
+    assert _corner(places, values, np.array(slopes), 0) == pytest.approx(expected, rel=1e-12)
 
 
 def test_no_change_of_sign(located: Any) -> None:
@@ -117,6 +129,14 @@ def test_three_roots_leave_the_chord() -> None:
     values, slopes = slope.integ()(places), slope(places)
     assert slopes[:2] == pytest.approx([0.24, -0.16], rel=1e-12)
     assert _vertex(places, values, slopes, 0) == pytest.approx(0.6, rel=1e-12)
+
+
+def test_slopes_alone_tell_where_values_differ_by_rounding() -> None:
+    """Assert the chord's zero where values, which differ by 1e-9 of themselves, are off by as much."""
+    places, slopes = np.array([0.0, 1.0, 2.0]), np.array([1e-9, -3e-9, -1.0])
+    off = np.array([1.0, 1.0 + 3e-9, 1.0])
+    assert _vertex(places, 3 * off, slopes, 0) == pytest.approx(0.25, rel=1e-12)
+    assert _vertex(places, off, slopes, 0) != pytest.approx(0.25, rel=1e-2)
 
 
 @pytest.mark.parametrize(("slopes", "expected"), [([0.0, -1.0], 2.0), ([1.0, 0.0], 3.0)])

@@ -11,11 +11,13 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 from support.drawn.machines.drawn import machine
+from survey.machines.curves import away, lacking
 
 import periodic as per
 import symbolic as sym
+from periodic.results.peaks import PEAK_OF
 from periodic.tracing.steps import watchedswings
-from periodic.tracing.steps.watchedswings import WatchedSwings, _continued
+from periodic.tracing.steps.watchedswings import WatchedSwings, _back, _continued
 
 
 def oscillator(ratio: float) -> sym.CompiledSystem:
@@ -111,27 +113,12 @@ def test_machines_of_the_catalogue(family: str, seed: int) -> None:
     drawn = machine(family, seed)
     system = sym.compile(drawn.model)
     branch = per.trace(system, drawn.parameter, drawn.bounds)
-    fine = per.trace(
-        system,
-        drawn.parameter,
-        drawn.bounds,
-        control=per.ArclengthControl(ds=0.01, ds_max=0.01),
-        watch=per.Watch(peaks={}),
-    )
+    short, unwatched = per.ArclengthControl(ds=0.01, ds_max=0.01), per.Watch(peaks={})
+    fine = per.trace(system, drawn.parameter, drawn.bounds, control=short, watch=unwatched)
     assert len(fine) > 2 * len(branch)
-    for name in (peak.removeprefix("peak of ") for peak in branch.peaks):
-        x, y = branch.curve(f"{name} p-p", each=64)
-        spans = np.ptp(x), np.ptp(y)
-        line = np.column_stack([x / spans[0], y / spans[1]])
-        points = np.column_stack([fine.values / spans[0], fine.peak_to_peak(name) / spans[1]])
-        assert max(_away(point, line) for point in points) < 0.01
-
-
-def _away(point: np.ndarray, line: np.ndarray) -> float:
-    """The distance of a point from straight pieces."""
-    begin, way = line[:-1], np.diff(line, axis=0)
-    place = np.clip(np.sum((point - begin) * way, axis=1) / np.maximum(np.sum(way**2, axis=1), 1e-300), 0, 1)
-    return float(np.hypot(*(begin + place[:, None] * way - point).T).min())
+    for name in (peak.removeprefix(PEAK_OF) for peak in branch.peaks):
+        assert away(fine, branch, name) < 0.01
+        assert lacking(fine, branch, name) == []
 
 
 def test_halves_turn_their_slopes() -> None:
@@ -249,6 +236,40 @@ def test_slopes_of_opposite_signs_tell_a_peak(watched: Any) -> None:
     end.found.peak_to_peak_slope[:] = -1.1e-8  # of what is at rest below 1e-3
     assert [*watched.stationary(point, end, 0.1)] == [0]
     assert watched.stationary(Made(0.0, 0.0, equilibrium=True), end, 0.1) == {}
+
+
+@pytest.mark.parametrize(
+    ("roots", "back"),
+    [
+        ((0.2, 0.6), 0.4**3 / 6),
+        ((-0.1, 0.6), 0.0),
+        ((-0.4, -0.1), 0.0),
+        ((-0.2, 1.1), 0.0),
+        ((1.2, 1.3), 0.0),
+    ],
+)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_peak_and_trough_of_a_cubic(roots: tuple[float, float], back: float, sign: float) -> None:
+    """Assert how far it goes back between roots of slope (t - a)(t - b): (b - a)^3/6 if both lie inside."""
+    slope = sign * np.polynomial.Polynomial.fromroots(roots)
+    value = slope.integ()
+    given = [np.array([each]) for each in (value(1.0) - value(0.0), slope(0.0), slope(1.0))]
+    assert _back(*given) == pytest.approx([back], rel=1e-12)
+
+
+def test_step_with_peak_and_trough_is_told(watched: Any) -> None:
+    """Assert it by hand, of slopes 1 and ends as high: 3^(1/2)/9 back; not of rest, grazings and noise."""
+    begin, end = Made(0.0, 0.0), Made(1.0, 0.0)
+    end.found.peak_to_peak[:] = 0.0
+    assert watched.turns_twice(begin, end, 1.0)
+    assert not watched.turns_twice(begin, Made(1.0, 0.0), 1.0)
+    assert not watched.turns_twice(Made(0.0, 0.0, "GR"), end, 1.0)
+    assert not watched.turns_twice(Made(0.0, 0.0, equilibrium=True), end, 1.0)
+    end.found.peak_to_peak[:], high = 1.0, Made(1.0, 0.0)
+    high.maximum["x"] = 1.0
+    high.maximum_slope["x"] = end.found.peak_to_peak_slope[0]
+    assert watched.turns_twice(high, end, 1.1e-5) and not watched.turns_twice(high, end, 1e-5)
+    assert not WatchedSwings().turns_twice(begin, end, 1.0)
 
 
 def test_branch_ends_at_a_usual_peak() -> None:

@@ -1,0 +1,32 @@
+"""The peaks that a branch has unasked: their names, the outputs that they are of, and those at grazings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from periodic.bifurcations.label import Label
+from periodic.orbit.layout import Layout
+from periodic.results.point import Point
+
+PEAK_OF = "peak of "
+"""How their names begin."""
+
+
+def usual_peaks(layout: Layout) -> dict[str, str]:
+    """Return the outputs whose peak to peak is watched by default, by the names of their peaks."""
+    states = {state.name for state in layout.states}
+    return {PEAK_OF + output.name: output.name for output in layout.outputs if output.name in states}
+
+
+def turning_grazings(points: Sequence[Point], output: str) -> list[Point]:
+    """Return the grazings at which a peak to peak is greater than at both neighbours, or less than at both.
+
+    There its slope jumps, without a zero that would be located.
+    """
+    found = []
+    for before, point, after in zip(points, points[1:], points[2:], strict=False):
+        if point.label is Label.GRAZING:
+            ways = [point.peak_to_peak(output) - beside.peak_to_peak(output) for beside in (before, after)]
+            if ways[0] * ways[1] > 0:
+                found.append(point)
+    return found
