@@ -18,7 +18,7 @@ from periodic.orbit.scheme import Array
 from periodic.results import frames, netcdf
 from periodic.results.betweenpoints import PER_SEGMENT, curve, slopes_of, smooth
 from periodic.results.branchoverview import branch_html
-from periodic.results.peaks import PEAK_OF, turning_grazings, usual_peaks
+from periodic.results.peaks import PEAK_OF, labelled_corners, usual_peaks
 from periodic.results.point import Point
 from periodic.results.record import Record
 from periodic.results.stop import Stop
@@ -128,14 +128,14 @@ class Branch(Record):
     def peaks(self) -> dict[str, tuple[Point, ...]]:
         """The points at which each measure is greatest or least along the branch, by the name of the peak.
 
-        By default the peak to peak of each coordinate x, as "peak of x", also at grazings, whose label is GR;
-        else those of `Watch(peaks=)`.
+        By default the peak to peak of each coordinate x, as "peak of x", at corners too that have labels of
+        their own, as GR or BP; else those of `Watch(peaks=)`.
         """
         usual = usual_peaks(self.layout)
         found = {}
         for name in self._peak_names:
-            grazing = turning_grazings(self.points, usual[name]) if name in usual else ()
-            own = {id(point) for point in (*self.labelled(name), *grazing)}
+            corners = labelled_corners(self.points, usual[name]) if name in usual else ()
+            own = {id(point) for point in (*self.labelled(name), *corners)}
             found[name] = tuple(point for point in self.points if id(point) in own)
         return found
 

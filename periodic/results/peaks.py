@@ -1,4 +1,4 @@
-"""The peaks that a branch has unasked: their names, the outputs that they are of, and those at grazings."""
+"""The peaks that a branch has unasked: their names and outputs, and those with other labels."""
 
 from __future__ import annotations
 
@@ -18,14 +18,15 @@ def usual_peaks(layout: Layout) -> dict[str, str]:
     return {PEAK_OF + output.name: output.name for output in layout.outputs if output.name in states}
 
 
-def turning_grazings(points: Sequence[Point], output: str) -> list[Point]:
-    """Return the grazings at which a peak to peak is greater than at both neighbours, or less than at both.
+def labelled_corners(points: Sequence[Point], output: str) -> list[Point]:
+    """Return the special points at which a peak to peak is greater than at both neighbours, or less.
 
-    There its slope jumps, without a zero that would be located.
+    There its slope jumps, without a zero that would be located: at grazings, and at branch points where a
+    doubled orbit becomes a plain one.
     """
     found = []
     for before, point, after in zip(points, points[1:], points[2:], strict=False):
-        if point.label is Label.GRAZING:
+        if point.label not in (Label.NONE, Label.PEAK):
             ways = [point.peak_to_peak(output) - beside.peak_to_peak(output) for beside in (before, after)]
             if ways[0] * ways[1] > 0:
                 found.append(point)

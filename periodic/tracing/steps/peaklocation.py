@@ -39,12 +39,21 @@ its last ones are none. Where values differ by less than this part of themselves
 ALIKE = 1e-3
 """Distance from a place predicted, in parts of the precision, up to which a known orbit is taken for it."""
 
+JUMP = 1e-3
+"""Largest slope at its zero, in parts of the larger one at the ends of the step: else it jumps."""
+
 EDGE = 0.01
 """Least distance from an end of it, in parts, at which both tangents may meet; else they tell nothing."""
 
 
 def peaks(
-    solver: Solver, base: Solution, new: Solution, ds: float, tests: Mapping[int, TestFunction]
+    solver: Solver,
+    base: Solution,
+    new: Solution,
+    ds: float,
+    tests: Mapping[int, TestFunction],
+    *,
+    corners: bool = True,
 ) -> list[Found]:
     """Return the points of a step at which peak to peaks are stationary, in any order.
 
@@ -58,11 +67,13 @@ def peaks(
         Its length in arclength.
     tests : mapping of int to TestFunction
         By index of the output, the test function of its stationary points, of opposite signs at the ends.
+    corners : bool
+        Whether slopes may jump at them, as at a branch point where a doubled orbit becomes a plain one.
 
     Returns
     -------
     list of Found
-        Of each output one, or none where its slope has the same sign at both ends.
+        Of each output one, or none where its slope has the same sign at both ends, or jumps and may not.
 
     Raises
     ------
@@ -70,11 +81,13 @@ def peaks(
         Where there is no orbit within the step.
     """
     within = WithinStep(solver, base, {0.0: base, ds: new}, ds)
-    return [found for output, test in tests.items() for found in _peak(within, output, test, ds)]
+    return [found for output, test in tests.items() for found in _peak(within, output, test, ds, corners)]
 
 
-def _peak(within: WithinStep, output: int, test: TestFunction, ds: float) -> Iterator[Found]:
-    """Yield the point of one output, if its slope vanishes."""
+def _peak(
+    within: WithinStep, output: int, test: TestFunction, ds: float, corners: bool = True
+) -> Iterator[Found]:
+    """Yield the point of one output, if its slope vanishes, or if it changes sign."""
     precision, lengths = test.precision * ds, [np.inf] * 4
     while True:
         places, values, slopes = _known(within, output)
@@ -90,6 +103,9 @@ def _peak(within: WithinStep, output: int, test: TestFunction, ds: float) -> Ite
         slow = high - low > HALVED * lengths[-4]
         lengths.append(high - low)
         within.at(_corner(places, values, slopes, k) if slow else place)
+    slope = float(np.abs(slopes[places == nearest]).max())
+    if not corners and slope > JUMP * max(abs(slopes[0]), abs(slopes[-1])):
+        return
     at = nearest if abs(nearest - place) <= ALIKE * precision else place
     yield refined_place(within.solver, at, within.at(at), ds, test)
 

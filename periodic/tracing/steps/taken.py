@@ -175,7 +175,8 @@ class Steps:
         if not tests or any(point.shrunk for point in found):
             return found
         try:
-            located = peaks(self.solver, base, new, ds, tests)
+            crossed = any(point.label is Label.BRANCH for point in found)
+            located = peaks(self.solver, base, new, ds, tests, corners=not crossed)
         except RejectedError:
             if ds > NEARLY * self.control.ds:
                 raise

@@ -40,15 +40,15 @@ class Step:
 
 
 @pytest.fixture
-def located(monkeypatch: pytest.MonkeyPatch) -> Callable[[Values, float], tuple[list[float], int]]:
+def located(monkeypatch: pytest.MonkeyPatch) -> Callable[..., tuple[list[float], int]]:
     """Return the places of peaks, and how many orbits were solved for."""
     monkeypatch.setattr(peaklocation, "measured", lambda solution: solution.found)
     monkeypatch.setattr(peaklocation, "refined_place", lambda solver, place, *others: place)
     test = testfunction.TestFunction(label=Label.PEAK, value=lambda solution: 0.0, precision=1e-7)
 
-    def places(values: Values, length: float) -> tuple[list[float], int]:
+    def places(values: Values, length: float, corners: bool = True) -> tuple[list[float], int]:
         step: Any = Step(values, length)
-        return [*_peak(step, 0, test, length)], len(step.known) - 2
+        return [*_peak(step, 0, test, length, corners)], len(step.known) - 2
 
     return places
 
@@ -90,6 +90,7 @@ def test_corner_is_a_peak(bend: float, located: Any) -> None:
 
     (place,), orbits = located(values, 0.6)
     assert place == pytest.approx(0.37, abs=1e-7) and orbits <= 15
+    assert located(values, 0.6, corners=False)[0] == []
 
 
 @pytest.mark.parametrize(("slopes", "expected"), [([1.0, -3.0], 2.75), ([1e-3, -3.0], 2.5)])
