@@ -9,6 +9,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from periodic.collocation.elimination import elimination
+from periodic.collocation.fastmotions.exponentials import Exponentials
 from periodic.collocation.fastmotions.substeps import SteppedCorrection, stepping
 from periodic.collocation.fastmotions.unresolved import lost
 from periodic.collocation.local import relax
@@ -40,6 +41,7 @@ from periodic.refinement.demand import demand, evenly, wanted_ntst
 from periodic.refinement.equidistribution import redistribute
 from periodic.stability.graded import GradedSpectrum, spectrum_of
 from periodic.stability.multipliers import Spectrum
+from periodic.stability.vibrating import VibratingSpectrum
 from periodic.system import System
 
 NODE_BEFORE_KINK = (1.0, 0.0, 10.0)
@@ -127,7 +129,11 @@ class Collocation(MeshMethod):
         system = equations.system
         off = aside(orbit, event_rows(system, orbit, equations.free))
         found = replace(equations, linearise=partial(self._equations, off=off)).solved(orbit)
-        return replace(found, operator=stepping(self.linearise, system, found.orbit, found.operator, 2.0))
+        given = (self.linearise, system, found.orbit, found.operator)
+        followed = stepping(*given, self.tolerance, 2.0)
+        if isinstance(followed, Exponentials):
+            return replace(found, fundamental=followed.fundamental)
+        return replace(found, operator=followed)
 
     @property
     def _plain(self) -> bool:
@@ -149,7 +155,8 @@ class Collocation(MeshMethod):
     ) -> ErrorEstimate:
         """Estimate the errors by a Newton step on the halved mesh, where it can be in one call of C."""
         system, orbit = problem.system, correction.orbit
-        plain = self._plain and not isinstance(spectrum, GradedSpectrum)
+        vibrating = isinstance(spectrum, VibratingSpectrum)
+        plain = self._plain and not vibrating and not isinstance(spectrum, GradedSpectrum)
         found = estimated(problem, orbit, tangent, spectrum) if plain else None
         if found is None:
             error = deferred(self.linearise, problem, orbit, tangent, spectrum, Halving(solved=self._beside))
@@ -159,7 +166,7 @@ class Collocation(MeshMethod):
             return error
         missing = max(self._misheld(system, orbit, error), neglected(system, orbit))
         rounding = error.rounding + self._rounding(system, orbit, spectrum)
-        unresolved = lost(system, orbit) if found.unresolved else 0.0
+        unresolved = lost(system, orbit) if found.unresolved and not vibrating else 0.0
         multiplier = max(error.multiplier, unresolved, missing, rounding)
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
 
@@ -190,9 +197,17 @@ class Collocation(MeshMethod):
         return of_states(orbit, spectrum) + of_events(orbit, event_rows(system, orbit, ()), spectrum)
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
-        """Return the multipliers, computed from the single steps where motions grow by many decades."""
-        stepping = correction.stepping if isinstance(correction, SteppedCorrection) else correction.operator
-        return spectrum_of(correction.fundamental, stepping, trivial)
+        """Return the multipliers: from the single steps where motions grow by many decades, from exponentials
+        where they vibrate faster than the mesh resolves."""
+        found = self._stepping(correction)
+        if isinstance(found, Exponentials):
+            return VibratingSpectrum(found.fundamental, trivial, turning=found.turning)
+        return spectrum_of(correction.fundamental, found, trivial)
+
+    @staticmethod
+    def _stepping(correction: Correction) -> Operator | Exponentials | None:
+        """What says how perturbations of an orbit grow and vibrate."""
+        return correction.stepping if isinstance(correction, SteppedCorrection) else correction.operator
 
     def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:
         """Return what decides which events get nodes of the mesh, and how many intervals it has."""

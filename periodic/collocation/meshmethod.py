@@ -145,7 +145,8 @@ class MeshMethod(Discretisation):
         wrong = (outcome for breach, outcome in WRONG.items() if found and self._breached(found, breach))
         if (first := next(wrong, None)) is not None:
             return replace(correction, outcome=first)
-        return SteppedCorrection(**{**shallow(correction), "system": system, "equations": self.linearise})
+        known = {"system": system, "equations": self.linearise, "tolerance": self.tolerance}
+        return SteppedCorrection(**{**shallow(correction), **known})
 
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
         """Return where a switch grazes its level on the way, or two event nodes meet."""

@@ -145,9 +145,12 @@ class Spectrum:
         upper[np.abs(multipliers - 1).argsort()[: self.trivial]] = False
         chosen = np.flatnonzero(upper)
         solutions = self.fundamental @ self.vectors[:, chosen]
-        rotations = _rotations(solutions[:-1], solutions[1:]).sum(axis=0)
-        both = zip(map(int, chosen), rotations, self._sizes(solutions, chosen), strict=True)
+        both = zip(map(int, chosen), self._rotated(solutions), self._sizes(solutions, chosen), strict=True)
         return [self._pair(k, float(turn), size) for k, turn, size in both]
+
+    def _rotated(self, solutions: Complex) -> Array:
+        """How far solutions (N+1, n, k) turn in the period, shape (k,)."""
+        return np.asarray(_rotations(solutions[:-1], solutions[1:]).sum(axis=0))
 
     def _pair(self, k: int, rotated: float, size: float) -> Pair:
         mu, left = complex(self.multipliers[k]), self._left(k)

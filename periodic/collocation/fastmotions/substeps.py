@@ -16,6 +16,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.collocation.fastmotions.exponentials import ORDER, Exponentials, exponentials, vibrates
 from periodic.collocation.fastmotions.unresolved import jacobians
 from periodic.correction.newton import Correction, Linearise
 from periodic.linear.bordering import Chain
@@ -38,32 +39,43 @@ MOST_SUBSTEPS = 64
 
 @dataclass(frozen=True)
 class SteppedCorrection(Correction):
-    """A correction that knows how perturbations grow, on intervals short enough to resolve it."""
+    """A correction that knows how perturbations grow and vibrate, where its mesh does not resolve it."""
 
     system: System | None = None
     equations: Linearise | None = None
+    tolerance: float = 0.0
 
     @cached_property
-    def stepping(self) -> Operator | None:
-        """The linearised equations in substeps where growth is fast; else `operator`, which may be None."""
+    def stepping(self) -> Operator | Exponentials | None:
+        """The linearised equations in substeps where growth is fast, or exponentials where vibrations are;
+        else `operator`, which may be None."""
         assert self.system is not None and self.equations is not None
         if self.gentle:
             return self.operator
-        return stepping(self.equations, self.system, self.orbit, self.operator)
+        return stepping(self.equations, self.system, self.orbit, self.operator, self.tolerance)
 
 
 def stepping(
-    equations: Linearise, system: System, orbit: Orbit, operator: Operator | None, finer: float = 1.0
-) -> Operator | None:
-    """Return equations that resolve how perturbations of an orbit grow: `operator` if its mesh does.
+    equations: Linearise,
+    system: System,
+    orbit: Orbit,
+    operator: Operator | None,
+    tolerance: float,
+    finer: float = 1.0,
+) -> Operator | Exponentials | None:
+    """Return what resolves how perturbations of an orbit grow or vibrate: `operator` if its mesh does.
 
-    finer: factor by which substeps are shorter than needed, for an error estimate that compares two. Raises
-    FAILURES.
+    tolerance: of the multipliers. finer: factor by which substeps are shorter than needed, for an error
+    estimate that compares two, and parts of exponentials. Raises FAILURES.
     """
     if resets_of(system) or jumps_of(system) or not (operator is None or isinstance(operator, Chain)):
         return operator
     counts = substeps(system, orbit, finer)
-    return operator if (counts == 1).all() else equations(system, divided(orbit, counts), ())
+    if (counts > 1).any():
+        return equations(system, divided(orbit, counts), ())
+    if vibrates(system, orbit, tolerance, finer):
+        return exponentials(system, orbit, tolerance / finer**ORDER) or operator
+    return operator
 
 
 def substeps(system: System, orbit: Orbit, finer: float = 1.0) -> NDArray[np.int_]:
