@@ -68,7 +68,8 @@ def peaks(
     tests : mapping of int to TestFunction
         By index of the output, the test function of its stationary points, of opposite signs at the ends.
     corners : bool
-        Whether slopes may jump at them, as at a branch point where a doubled orbit becomes a plain one.
+        Whether slopes may jump at them, as at a branch point where a doubled orbit becomes a plain one, and
+        comes back through the orbits it came by.
 
     Returns
     -------

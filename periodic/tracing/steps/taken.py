@@ -175,8 +175,8 @@ class Steps:
         if not tests or any(point.shrunk for point in found):
             return found
         try:
-            crossed = any(point.label is Label.BRANCH for point in found)
-            located = peaks(self.solver, base, new, ds, tests, corners=not crossed)
+            turned = any(point.label in (Label.BRANCH, Label.END) for point in found)
+            located = peaks(self.solver, base, new, ds, tests, corners=not turned)
         except RejectedError:
             if ds > NEARLY * self.control.ds:
                 raise
