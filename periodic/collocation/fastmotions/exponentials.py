@@ -27,9 +27,9 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from periodic.collocation.fastmotions.unresolved import FAST, growth, jacobians
+from periodic.collocation.fastmotions.unresolved import FAST, growth
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.scheme import Array
+from periodic.orbit.scheme import Array, Scheme
 from periodic.system import System
 from periodic.system.precision import EPSILON
 
@@ -40,13 +40,13 @@ ORDER = 4
 """Order of the error in the length of the parts, before they are extrapolated."""
 
 MOST_PARTS = 64
-"""Largest number of parts of an interval."""
+"""Into how many an interval is divided at the most."""
 
 SHORT = 1.0
 """Exponent up to which moments of an exponential are summed as series."""
 
 TERMS = 18
-"""Terms of these: 1/18! is rounding."""
+"""How many of their terms are summed: 1/18! is rounding."""
 
 Complex = NDArray[np.complex128]
 Number = TypeVar("Number", np.float64, np.complex128)
@@ -70,19 +70,19 @@ class Exponentials:
         )
 
 
-def vibrates(system: System, orbit: Orbit, tolerance: float, finer: float = 1.0) -> bool:
+def vibrates(scheme: Scheme, jacobian: Array, tolerance: float, finer: float = 1.0) -> bool:
     """Return whether a mesh is too coarse for the multipliers of fast vibrations.
 
     Parameters
     ----------
-    system : System
-        The equations.
-    orbit : Orbit
-        The orbit.
+    scheme : Scheme
+        The scheme of the mesh.
+    jacobian : Array
+        Of dx/dtau = J x about the middle of each interval, times its width, shape (N, n, n).
     tolerance : float
         Error of the multipliers that is tolerated.
     finer : float
-        By how much the mesh is finer than the one that is asked about.
+        By how much the intervals are shorter than these widths.
 
     Returns
     -------
@@ -90,7 +90,6 @@ def vibrates(system: System, orbit: Orbit, tolerance: float, finer: float = 1.0)
         Whether one turns by more than FAST in an interval, and the scheme's error in it there, of what is
         left of it over the period, exceeds the tolerance.
     """
-    jacobian = jacobians(system, orbit) * (finer * orbit.grid.width[:, None, None])
     if not np.isfinite(jacobian).all() or np.abs(jacobian).sum(axis=2).max() <= FAST:
         return False
     exponents = np.linalg.eigvals(jacobian).astype(np.complex128)
@@ -99,7 +98,7 @@ def vibrates(system: System, orbit: Orbit, tolerance: float, finer: float = 1.0)
         return False
     least = np.where(fast, exponents.real, -np.inf).max(axis=1)
     left = np.exp(min(float(least[fast.any(axis=1)].sum()) / finer, 0.0))
-    off = np.abs(growth(orbit.mesh.scheme, exponents[fast]) * np.exp(-exponents[fast]) - 1)
+    off = np.abs(growth(scheme, exponents[fast]) * np.exp(-exponents[fast]) - 1)
     return bool(left * off.max() > tolerance)
 
 
@@ -161,7 +160,7 @@ class _Frame:
 def _frame(mean: Array) -> _Frame:
     """Sizes by which the mean matrix is balanced, and its modes then."""
     balanced, (size, _) = scipy.linalg.matrix_balance(mean, permute=False, separate=True)
-    return _Frame(size, np.linalg.eig(balanced)[1].astype(np.complex128))
+    return _Frame(size.astype(float), np.linalg.eig(balanced)[1].astype(np.complex128))
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ from periodic.linear.operator import Operator
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
 from periodic.system import System, jumps_of, resets_of
 from periodic.system.precision import EPSILON
 
@@ -70,18 +71,21 @@ def stepping(
     """
     if resets_of(system) or jumps_of(system) or not (operator is None or isinstance(operator, Chain)):
         return operator
-    counts = substeps(system, orbit, finer)
+    jacobian = jacobians(system, orbit) * (finer * orbit.grid.width[:, None, None])
+    counts = substeps(jacobian)
     if (counts > 1).any():
         return equations(system, divided(orbit, counts), ())
-    if vibrates(system, orbit, tolerance, finer):
+    if vibrates(orbit.mesh.scheme, jacobian, tolerance, finer):
         return exponentials(system, orbit, tolerance / finer**ORDER) or operator
     return operator
 
 
-def substeps(system: System, orbit: Orbit, finer: float = 1.0) -> NDArray[np.int_]:
-    """Return the number of substeps of each interval, shape (N,): 1 where nothing grows fast."""
-    one = np.ones(orbit.mesh.ntst, dtype=int)
-    jacobian = jacobians(system, orbit) * (finer * orbit.grid.width[:, None, None])
+def substeps(jacobian: Array) -> NDArray[np.int_]:
+    """Return the number of substeps of each interval, shape (N,): 1 where nothing grows fast.
+
+    jacobian: of dx/dtau = J x about its middle, times its width, shape (N, n, n).
+    """
+    one = np.ones(len(jacobian), dtype=int)
     if not np.isfinite(jacobian).all() or np.abs(jacobian).sum(axis=2).max() <= GROWING:
         return one
     exponents = np.linalg.eigvals(jacobian)

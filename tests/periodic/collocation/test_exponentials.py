@@ -14,6 +14,7 @@ import periodic as per
 import symbolic as sym
 from periodic.collocation.fastmotions import exponentials as module
 from periodic.collocation.fastmotions.exponentials import _Matrices, _moments, exponentials, vibrates
+from periodic.collocation.fastmotions.unresolved import jacobians
 from periodic.orbit.orbit import Orbit
 from periodic.stability.multipliers import Spectrum
 from periodic.stability.vibrating import VibratingSpectrum
@@ -137,10 +138,10 @@ def test_when_it_vibrates() -> None:
     """Assert it where the scheme loses a vibration that lasts, not where it is damped out or resolved."""
     for omega, ratio, expected in ((150.7, 1e-3, True), (150.7, 0.2, False), (6.0, 1e-3, False)):
         system = coupled(omega, ratio)
-        assert vibrates(system, first(system).orbit, 1e-7) is expected
-    system = coupled(20.0)
-    orbit = first(system).orbit
-    assert vibrates(system, orbit, 1e-7, 2.0) and not vibrates(system, orbit, 1e9, 2.0)
+        orbit = first(system).orbit
+        width = orbit.grid.width[:, None, None]
+        assert vibrates(orbit.mesh.scheme, width * jacobians(system, orbit), 1e-7) is expected
+        assert not vibrates(orbit.mesh.scheme, width * jacobians(system, orbit), 1e9)
 
 
 def test_rigid_body_has_no_modes() -> None:

@@ -12,6 +12,7 @@ import pytest
 import periodic as per
 import symbolic as sym
 from periodic.collocation.collocation import CollocationRefinement
+from periodic.collocation.fastmotions import substeps
 from periodic.collocation.fastmotions.unresolved import FAST, growth, lost
 
 DAMPING = 1e-5
@@ -55,17 +56,28 @@ def test_growth(family: per.Family) -> None:
 
 
 @pytest.mark.parametrize("ratio", [3.0, 20.5, 60.25])
-def test_fast_vibrations_are_resolved(ratio: float) -> None:
+def test_fast_vibrations_are_resolved(ratio: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that multipliers of a vibration up to 86 times the excitation are right, by a finer mesh."""
+    monkeypatch.setattr(substeps, "exponentials", lambda *_: None)
     point = orbit_of(two_modes(ratio), per.Collocation())
     assert np.abs(point.multipliers) == pytest.approx(moduli(ratio, 0.7), abs=3e-6)
     assert point.error.multiplier <= 3e-6
     assert lost(two_modes(ratio), point.orbit) < 1e-6
 
 
+@pytest.mark.parametrize("ratio", [20.5, 60.25, 2000.0, 3e4])
+def test_exponentials_need_no_mesh_for_them(ratio: float) -> None:
+    """Assert multipliers of a vibration up to 43000 times the excitation to 1e-9, on 24 intervals."""
+    point = orbit_of(two_modes(ratio), per.Collocation())
+    assert point.orbit.mesh.ntst == 24
+    assert np.abs(point.multipliers) == pytest.approx(moduli(ratio, 0.7), abs=1e-9)
+    assert point.error.multiplier < 1e-9
+
+
 @pytest.mark.parametrize("ratio", [2000.0, 3e4])
-def test_what_is_lost_is_told(ratio: float) -> None:
+def test_what_is_lost_is_told(ratio: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that the error of multipliers that no allowed mesh resolves is their true size."""
+    monkeypatch.setattr(substeps, "exponentials", lambda *_: None)
     point = orbit_of(two_modes(ratio), per.Collocation())
     true = moduli(ratio, 0.7)
     away = abs(np.abs(point.multipliers)[-1] - true[-1])
