@@ -144,6 +144,14 @@ def test_when_it_vibrates() -> None:
         assert not vibrates(orbit.mesh.scheme, width * jacobians(system, orbit), 1e9)
 
 
+def test_vibration_that_is_gone_at_once() -> None:
+    """Assert that one does not count that dies within an interval, however fast, without an overflow."""
+    scheme = per.Scheme()
+    for rate, expected in ((-1e3, False), (-40.0, False), (-1e-3, True)):
+        jacobian = np.array([[[rate, 50.0], [-50.0, rate]]])
+        assert vibrates(scheme, jacobian, 1e-7) is expected
+
+
 def test_rigid_body_has_no_modes() -> None:
     """Assert none where the mean matrix has no basis of eigenvectors."""
 
