@@ -39,8 +39,8 @@ POINTS = 4
 ORDER = 4
 """Order of the error in the length of the parts, before they are extrapolated."""
 
-GONE = float(np.log(EPSILON))
-"""Real part of an exponent below which a vibration is gone at the end of an interval."""
+GONE = float(-np.log(EPSILON))
+"""Decay in an interval (a logarithm) above which a vibration is gone at its end."""
 
 MOST_PARTS = 64
 """Into how many an interval is divided at the most."""
@@ -96,7 +96,7 @@ def vibrates(scheme: Scheme, jacobian: Array, tolerance: float, finer: float = 1
     if not np.isfinite(jacobian).all() or np.abs(jacobian).sum(axis=2).max() <= FAST:
         return False
     exponents = np.linalg.eigvals(jacobian).astype(np.complex128)
-    fast = (np.abs(exponents.imag) > FAST) & (exponents.real > GONE)
+    fast = (np.abs(exponents.imag) > FAST) & (exponents.real > -GONE)
     if not fast.any():
         return False
     least = np.where(fast, exponents.real, -np.inf).max(axis=1)
