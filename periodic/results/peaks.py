@@ -21,13 +21,14 @@ def usual_peaks(layout: Layout) -> dict[str, str]:
 def labelled_corners(points: Sequence[Point], output: str) -> list[Point]:
     """Return the special points at which a peak to peak is greater than at both neighbours, or less.
 
-    There its slope jumps, without a zero that would be located: at grazings, and at branch points where a
-    doubled orbit becomes a plain one.
+    By more than the errors of the three. There its slope jumps, without a zero that would be located: at
+    grazings, and at branch points where a doubled orbit becomes a plain one.
     """
     found = []
     for before, point, after in zip(points, points[1:], points[2:], strict=False):
         if point.label not in (Label.NONE, Label.PEAK):
-            ways = [point.peak_to_peak(output) - beside.peak_to_peak(output) for beside in (before, after)]
-            if ways[0] * ways[1] > 0:
+            low, height, high = (each.peak_to_peak(output) for each in (before, point, after))
+            error = height * max(each.error.orbit for each in (before, point, after))
+            if min(height - low, height - high) > error or min(low - height, high - height) > error:
                 found.append(point)
     return found

@@ -13,7 +13,8 @@ def test_special_point_higher_or_lower_than_its_neighbours() -> None:
     """Assert both, and none of a plain point or peak, on a slope, or at an end."""
 
     def point(height: float, label: str) -> Any:
-        return SimpleNamespace(label=per.Label(label), peak_to_peak=lambda name: height)
+        error = SimpleNamespace(orbit=1e-3)
+        return SimpleNamespace(label=per.Label(label), peak_to_peak=lambda name: height, error=error)
 
     given = [
         (9.0, "GR"),
@@ -28,3 +29,5 @@ def test_special_point_higher_or_lower_than_its_neighbours() -> None:
     points = [point(*each) for each in given]
     assert labelled_corners(points, "x") == [points[2], points[3]]
     assert labelled_corners(points[:2], "x") == []
+    flat = [point(1.0, ""), point(1.0009, "LP"), point(1.0, ""), point(0.9985, "GR"), point(1.0, "")]
+    assert labelled_corners(flat, "x") == [flat[3]]
