@@ -121,18 +121,23 @@ def exponentials(system: System, orbit: Orbit, tolerance: float) -> Exponentials
     -------
     Exponentials or None
         None where the mean matrix has no basis of modes, as with rigid-body motions, or where the steps do
-        not converge.
+        not converge, as beside motions that decay by hundreds of decades in an interval.
     """
-    matrices = _Matrices(system, orbit)
-    whole = matrices.at(1, np.arange(orbit.mesh.ntst))
-    turning = _mean(whole) * orbit.grid.width[:, None, None]
-    frame = _frame(turning.sum(axis=0) / orbit.grid.width.sum())
-    if not EPSILON * np.linalg.cond(frame.modes) < tolerance:
-        return None
     try:
-        found = _extrapolated(matrices, frame, tolerance / orbit.mesh.ntst)
+        with np.errstate(over="ignore", invalid="ignore"):  # what overflows does not converge
+            return _found(_Matrices(system, orbit), tolerance / orbit.mesh.ntst)
     except np.linalg.LinAlgError:  # the modes of a part are no basis
         return None
+
+
+def _found(matrices: _Matrices, tolerance: float) -> Exponentials | None:
+    """The same, to a tolerance in each interval. Raises numpy.linalg.LinAlgError."""
+    width = matrices.orbit.grid.width
+    turning = _mean(matrices.at(1, np.arange(len(width)))) * width[:, None, None]
+    frame = _frame(turning.sum(axis=0) / width.sum())
+    if not EPSILON * np.linalg.cond(frame.modes) < tolerance:
+        return None
+    found = _extrapolated(matrices, frame, tolerance)
     return None if found is None else Exponentials(frame.back(found), turning)
 
 
@@ -264,10 +269,9 @@ def _turned(matrices: Complex, length: Array, exponents: Complex) -> Complex:
     places = np.polynomial.legendre.leggauss(POINTS)[0]
     powers = np.linalg.inv(np.vander(places, increasing=True))
     half = (length / 2)[:, None, None]
-    with np.errstate(over="ignore", invalid="ignore"):  # of motions that decay fast; shorter parts converge
-        moments = _moments((exponents[:, None, :] - exponents[:, :, None]) * half, POINTS)
-        coefficients = np.einsum("pm,jmab->pjab", powers, matrices)
-        return np.asarray(half * (coefficients * moments).sum(axis=0))
+    moments = _moments((exponents[:, None, :] - exponents[:, :, None]) * half, POINTS)
+    coefficients = np.einsum("pm,jmab->pjab", powers, matrices)
+    return np.asarray(half * (coefficients * moments).sum(axis=0))
 
 
 def _moments(z: Complex, count: int) -> Complex:

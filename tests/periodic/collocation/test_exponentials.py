@@ -167,6 +167,26 @@ def test_rigid_body_has_no_modes() -> None:
     assert exponentials(system, orbit, 1e-7) is None
 
 
+def test_stiff_motion_beside_it() -> None:
+    """Assert none, without a warning, beside one that decays by e^-30000 in an interval, all with e^-3."""
+    for rate, known in ((1e5, False), (8.0, True)):
+
+        def rates(x: Any, p: Any, wave: Any, rate: float = rate) -> dict[str, object]:
+            force = 0.5 * (x.x - x.y / 2) ** 3
+            fast = {"y": x.w, "w": -(150.7**2) * x.y + 75.0 * force}
+            return {"x": x.v, "v": -x.x - 0.1 * x.v - force + wave.cos, **fast, "u": rate * (x.x**2 - x.u)}
+
+        given = {"frequency": "Omega", "scales": {"y": 1e-2, "w": 1.507}}
+        system = sym.compile(sym.Equations(rates, dict.fromkeys("xvywu", 0.0), {"Omega": 0.8}, **given))
+        few = {"control": per.ArclengthControl(max_points=1), "method": per.Collocation(ntst_max=24)}
+        point = per.trace(system, "Omega", (0.8, 1.0), tol=1e-7, **few)[0]
+        found = exponentials(system, point.orbit, 1e-7)
+        assert (found is not None) is known
+        if known:
+            expected = np.linalg.eigvals(monodromy(system, point.orbit))
+            assert apart(point.multipliers, expected) < max(1.5 * point.error.multiplier, 1e-9) < 3e-8
+
+
 def test_steps_that_do_not_converge(monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert none with too few parts, so that collocation's own multipliers count."""
     system = coupled(150.7)
