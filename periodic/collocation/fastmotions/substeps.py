@@ -24,7 +24,6 @@ from periodic.linear.operator import Operator
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.scheme import Array
 from periodic.system import System, jumps_of, resets_of
 from periodic.system.precision import EPSILON
 
@@ -72,25 +71,25 @@ def stepping(
     if resets_of(system) or jumps_of(system) or not (operator is None or isinstance(operator, Chain)):
         return operator
     jacobian = jacobians(system, orbit) * (finer * orbit.grid.width[:, None, None])
-    counts = substeps(jacobian)
+    if not np.isfinite(jacobian).all() or np.abs(jacobian).sum(axis=2).max() <= GROWING:
+        return operator
+    exponents = np.linalg.eigvals(jacobian).astype(np.complex128)
+    counts = substeps(exponents)
     if (counts > 1).any():
         return equations(system, divided(orbit, counts), ())
-    if vibrates(orbit.mesh.scheme, jacobian, tolerance, finer):
+    if vibrates(orbit.mesh.scheme, exponents, tolerance, finer):
         return exponentials(system, orbit, tolerance / finer**ORDER) or operator
     return operator
 
 
-def substeps(jacobian: Array) -> NDArray[np.int_]:
+def substeps(exponents: NDArray[np.complex128]) -> NDArray[np.int_]:
     """Return the number of substeps of each interval, shape (N,): 1 where nothing grows fast.
 
-    jacobian: of dx/dtau = J x about its middle, times its width, shape (N, n, n).
+    exponents: eigenvalues of J, dx/dtau = J x about its middle, times its width, shape (N, n).
     """
-    one = np.ones(len(jacobian), dtype=int)
-    if not np.isfinite(jacobian).all() or np.abs(jacobian).sum(axis=2).max() <= GROWING:
-        return one
-    exponents = np.linalg.eigvals(jacobian)
+    one = np.ones(len(exponents), dtype=int)
     growth = exponents.real.max(axis=1)
-    growth[growth <= EPSILON * jacobian.shape[1] * np.abs(exponents).max(axis=1)] = 0.0
+    growth[growth <= EPSILON * exponents.shape[1] * np.abs(exponents).max(axis=1)] = 0.0
     if growth.max() <= GROWING:
         return one
     needed = np.maximum(growth / EACH, np.abs(exponents).max(axis=1) / FASTEST)
