@@ -17,7 +17,6 @@ Equations I, II.9 (extrapolation).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
@@ -43,7 +42,7 @@ GONE = float(-np.log(EPSILON))
 """Decay in an interval (a logarithm) above which a vibration is gone at its end."""
 
 MOST_PARTS = 64
-"""Into how many an interval is divided at the most."""
+"""Into how many an interval is divided at the most, a power of 2."""
 
 SHORT = 1.0
 """Exponent up to which moments of an exponential are summed as series."""
@@ -215,8 +214,8 @@ def _extrapolated(matrices: _Matrices, frame: _Frame, tolerance: float) -> Compl
     count = matrices.orbit.mesh.ntst
     found = np.empty((count, *frame.modes.shape), dtype=np.complex128)
     left, row = np.arange(count), list[Complex]()
-    for parts in _doubled():
-        new = [_steps(matrices, frame, parts, left)]
+    for level in range(MOST_PARTS.bit_length()):
+        new = [_steps(matrices, frame, 2**level, left)]
         for k, coarse in enumerate(row):
             new.append(new[k] + (new[k] - coarse) / (2.0 ** (ORDER + 2 * k) - 1))
         if row:
@@ -228,14 +227,6 @@ def _extrapolated(matrices: _Matrices, frame: _Frame, tolerance: float) -> Compl
             return found
         row = new
     return None
-
-
-def _doubled() -> Iterator[int]:
-    """Numbers of parts."""
-    parts = 1
-    while parts <= MOST_PARTS:
-        yield parts
-        parts *= 2
 
 
 def _steps(matrices: _Matrices, frame: _Frame, parts: int, chosen: NDArray[np.int_]) -> Complex:

@@ -23,6 +23,7 @@ from periodic.correction.measured import measured
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.orbit.scheme import Array
+from periodic.results.betweenpoints import CORNER
 
 HALVED = 0.5
 """Part of itself to which four orbits shorten the interval in which a slope changes sign, or its end tangents
@@ -38,9 +39,6 @@ its last ones are none. Where values differ by less than this part of themselves
 
 ALIKE = 1e-3
 """Distance from a place predicted, in parts of the precision, up to which a known orbit is taken for it."""
-
-JUMP = 1e-3
-"""Largest slope at its zero, in parts of the larger one at the ends of the step: else it jumps."""
 
 EDGE = 0.01
 """Least distance from an end of it, in parts, at which both tangents may meet; else they tell nothing."""
@@ -105,7 +103,7 @@ def _peak(
         lengths.append(high - low)
         within.at(_corner(places, values, slopes, k) if slow else place)
     slope = float(np.abs(slopes[places == nearest]).max())
-    if not corners and slope > JUMP * max(abs(slopes[0]), abs(slopes[-1])):
+    if not corners and slope > CORNER * max(abs(slopes[0]), abs(slopes[-1])):
         return
     at = nearest if abs(nearest - place) <= ALIKE * precision else place
     yield refined_place(within.solver, at, within.at(at), ds, test)
