@@ -9,7 +9,7 @@ from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.bifurcations.torus import noise
 from periodic.correction.solution import Solution
-from periodic.stability.winding import pair_crossings
+from periodic.stability.winding import confined, pair_crossings
 
 TOUCHED = 0.01
 """Largest prod (1 - mu) where a multiplier touches 1, as a part of that at the step's ends."""
@@ -42,6 +42,7 @@ BRANCHING = TestFunction(
     genuine=known,
     twice=branches_twice,
     dips=lambda base, new: dips(base, new, 1),
+    confined=lambda base, new: confined(base.spectrum, new.spectrum),
     local=lambda solution: nearest(solution.spectrum.nontrivial, 1),
     touches=touches,
     singular=True,

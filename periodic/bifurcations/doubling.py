@@ -10,10 +10,7 @@ from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.solution import Solution
 from periodic.stability.multipliers import Complex
-from periodic.stability.winding import pair_crossings
-
-NEGATIVE = 1e-3
-"""Real multipliers nearer to 0 than this are too far from -1."""
+from periodic.stability.winding import FADED, confined, pair_crossings
 
 
 def product_test(found: Complex, at: int) -> float:
@@ -66,9 +63,18 @@ def doubles_twice(base: Solution, new: Solution) -> bool:
 
     A complex pair turns past -1, or two multipliers at one end are real and negative: either may pass -1.
     """
-    ends = [end.spectrum.multipliers for end in (base, new)]
-    negative = [int(((mu.imag == 0) & (mu.real < -NEGATIVE)).sum()) for mu in ends]
-    return max(negative) > 1 or bool(pair_crossings(base.spectrum, new.spectrum, -1))
+    return _two_negative(base, new) or bool(pair_crossings(base.spectrum, new.spectrum, -1))
+
+
+def _two_negative(*ends: Solution) -> bool:
+    """Whether an orbit has two real negative multipliers."""
+    found = [end.spectrum.multipliers for end in ends]
+    return max(int(((mu.imag == 0) & (mu.real < -FADED)).sum()) for mu in found) > 1
+
+
+def kept_from_doubling(base: Solution, new: Solution) -> bool:
+    """Whether pairs that turn past -1 between two orbits are seen not to reach it."""
+    return not _two_negative(base, new) and confined(base.spectrum, new.spectrum)
 
 
 DOUBLING = TestFunction(
@@ -77,5 +83,6 @@ DOUBLING = TestFunction(
     genuine=known,
     twice=doubles_twice,
     dips=lambda base, new: dips(base, new, -1),
+    confined=kept_from_doubling,
     local=lambda solution: nearest(solution.spectrum.nontrivial, -1),
 )

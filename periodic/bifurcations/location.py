@@ -199,9 +199,17 @@ def sign_between(within: Way, new: Solution, ds: float, test: TestFunction) -> f
 
     ends = {0.0: value(0.0), ds: value(ds)}
     vertex = 1 / (1 + np.sqrt(ends[ds] / ends[0]))
-    dips = test.dips(within.base, new) or [(vertex, np.nan)]
-    found = (second_change(value, ends, place * ds, expected) for place, expected in dips)
-    return next((place for place in found if place is not None), None)
+    for place, expected in test.dips(within.base, new) or [(vertex, np.nan)]:
+        if value(place * ds) > 0 and _confined(test, within.base, new, within.at(place * ds)):
+            return None
+        if (found := second_change(value, ends, place * ds, expected)) is not None:
+            return found
+    return None
+
+
+def _confined(test: TestFunction, base: Solution, *others: Solution) -> bool:
+    """Whether a test function is seen not to reach 0, by a base and each of other solutions."""
+    return all(test.confined(base, other) for other in others)
 
 
 def _located(within: WithinStep, span: tuple[float, float], ds: float, test: TestFunction) -> list[Found]:

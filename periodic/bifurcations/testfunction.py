@@ -40,6 +40,8 @@ class TestFunction:
     dips : callable
         Places, as parts of the step, about which it may do so, and the values expected there if it does not;
         by default where a parabola would touch 0.
+    confined : callable
+        Whether two solutions tell that it does not, of what is expected at dips.
     local : callable, optional
         A function of the same sign to be used near a zero, as it is smooth there.
     sharp : callable, optional
@@ -59,6 +61,7 @@ class TestFunction:
     genuine: Callable[[Solution], bool] = lambda solution: True
     twice: Callable[[Solution, Solution], bool] = lambda base, new: False
     dips: Callable[[Solution, Solution], list[tuple[float, float]]] = lambda base, new: []
+    confined: Callable[[Solution, Solution], bool] = lambda base, new: False
     local: Callable[[Solution], float] | None = None
     sharp: Callable[[Solution], float] | None = None
     touches: Callable[[Solution, Solution, Solution], bool] = lambda fold, base, new: False

@@ -47,8 +47,8 @@ from periodic.system import System
 NODE_BEFORE_KINK = (1.0, 0.0, 10.0)
 """How far outside its excursion (rad, in tolerances) an event node lies on a new mesh, tried in turn."""
 
-NODES = 10
-"""Event nodes of an orbit beyond which it may have more intervals than `ntst_max`."""
+MANY = 10
+"""Event nodes or reversals of a state beyond which an orbit may have more intervals than `ntst_max`."""
 
 SHALLOWER = (10.0, 100.0)
 """Factors by which the least event level is raised, in turn, where a new mesh fails."""
@@ -63,8 +63,9 @@ class Collocation(MeshMethod):
     scheme : Scheme, optional
         Family and number of collocation points; default Radau IIA with as many as the tolerance asks for.
     ntst, ntst_min, ntst_max : int
-        Intervals to begin with, fewest and most: of an orbit of up to ten event nodes; one of more, whose
-        segments are graded each by itself, has as many more.
+        Intervals to begin with, fewest and most: of an orbit of up to ten event nodes, each of whose states
+        reverses up to ten times; one of more nodes, whose segments are graded each by itself, or of more
+        vibrations has as many more.
     kinks : KinkSettings, optional
         When a crossing of a level by a switch gets an event node; default what the tolerance asks for.
     solver : callable
@@ -254,8 +255,8 @@ class CollocationRefinement(Refinement):
 
     @property
     def _largest(self) -> int:
-        """The largest number of intervals, in proportion to the event nodes where they are many."""
-        return self.method.ntst_max * max(NODES, len(self.orbit.phases)) // NODES
+        """The largest number of intervals, in proportion to event nodes or vibrations where they are many."""
+        return self.method.ntst_max * max(MANY, len(self.orbit.phases), _reversals(self.orbit)) // MANY
 
     @property
     def shortfall(self) -> str:
@@ -322,3 +323,9 @@ class CollocationRefinement(Refinement):
         for factor in SHALLOWER if levels else ():
             shallower = replace(self._settings, deepest=factor * min(levels))
             yield eventnodes.wanted(self.system, self.orbit, shallower)
+
+
+def _reversals(orbit: Orbit) -> int:
+    """Return how often the state that does so most changes its way from one mesh point to the next."""
+    ways = np.sign(np.diff(orbit.nodes, axis=0))
+    return int((ways[:-1] * ways[1:] < 0).sum(axis=0).max(initial=0))

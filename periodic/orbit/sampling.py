@@ -19,8 +19,9 @@ from periodic.system import Kind, System, index_of, resets_of, surfaces_of
 PER_PERIOD = 96
 """Equal intervals in each period of the excitation, used where they resolve the samples."""
 
-GRADED = 384
-"""Intervals in each period, placed between samples, of a motion that equal ones do not resolve."""
+GRADED = tuple(384 * 2**k for k in range(6))
+"""Intervals in each period, placed between samples, of a motion that equal ones do not resolve: the first
+that do, and no more than there are samples."""
 
 LEAST_WIDTH = 1e-9
 """Least distance, in periods, of an interval's end from that of the period."""
@@ -116,12 +117,15 @@ def _of_relays(system: System, modes: Sequence[int]) -> tuple[tuple[int, int], .
 
 def _through(phase: Array, periods: int, state: Array, algebraic: Array, parameter: Array) -> Orbit:
     """The orbit on equal intervals, or on intervals that end at samples where equal ones miss something."""
-    even = uniform(Scheme(), PER_PERIOD * periods, FORCED * periods)
-    orbit = _on(even, phase, state, algebraic, parameter)
-    missed = np.abs(orbit.state(phase) - state).max(axis=0)
-    if (missed <= FARTHEST_SAMPLE * np.maximum(np.ptp(state, axis=0), LEAST_SPAN)).all():
-        return orbit
-    return _on(_graded(phase, state, GRADED * periods), phase, state, algebraic, parameter)
+    sizes, most = np.maximum(np.ptp(state, axis=0), LEAST_SPAN), len(phase) - 1
+    counts = [ntst * periods for ntst in GRADED if ntst * periods < most] or [GRADED[0] * periods]
+    orbit = _on(uniform(Scheme(), PER_PERIOD * periods, FORCED * periods), phase, state, algebraic, parameter)
+    for ntst in counts:
+        missed = np.abs(orbit.state(phase) - state).max(axis=0)
+        if (missed <= FARTHEST_SAMPLE * sizes).all():
+            break
+        orbit = _on(_graded(phase, state, ntst), phase, state, algebraic, parameter)
+    return orbit
 
 
 def _graded(phase: Array, state: Array, ntst: int) -> Mesh:

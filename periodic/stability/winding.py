@@ -11,6 +11,7 @@ followed over the whole period, so that full turns count.
 
 from __future__ import annotations
 
+import contextlib
 import math
 from dataclasses import dataclass
 from functools import lru_cache
@@ -31,6 +32,9 @@ TINY = 1e-9
 INSIDE = np.array([0.0, 1.0, *np.linspace(0, 1, 9)[1:-1]])
 """Places in a step at which it is looked at, both ends first; also those where it is nearest +1."""
 
+
+FADED = 1e-3
+"""Multipliers nearer to 0 than this are too far from the unit circle to reach it and come back in a step."""
 
 COUPLED = 0.2
 """Least coupling of two pairs that may leave the unit circle, over their distance from it in log |mu|."""
@@ -136,9 +140,12 @@ def pair_crossings(before: Spectrum, after: Spectrum, sign: int) -> list[tuple[f
     """Return where pairs turn past `sign` (+1 or -1) between two orbits, as parts of the way, and moduli.
 
     Of a pair that seems to turn by more than half a turn it is not sure which way it goes: both are taken.
+    Pairs that have faded at both orbits do not count.
     """
     offset, found = 0.0 if sign > 0 else math.pi, []
     for a, b in _matched(before, after):
+        if max(a.modulus, b.modulus) < FADED:
+            continue
         shortest = a.turn(b)
         for turn in (shortest, shortest - math.copysign(math.tau, shortest))[: 1 + (abs(shortest) > math.pi)]:
             low, high = sorted((a.argument, a.argument + turn))
@@ -183,6 +190,21 @@ def _growth(before: Pair, after: Pair, place: float) -> float:
     return (1 - place) * math.log(before.modulus) + place * math.log(after.modulus)
 
 
+def confined(before: Spectrum, after: Spectrum) -> bool:
+    """Whether no pair is coupled enough to its own conjugate to leave the unit circle at +1 or -1.
+
+    As far as two orbits tell: at the one mu and its conjugate are eigenvalues, at the other they mix where
+    they are coupled and turned by another angle from where they meet.
+    """
+    for own, other in ((before, after), (after, before)):
+        k, moduli = len(own.pairs), np.array([pair.modulus for pair in own.pairs])
+        mixed = _mixed(own, other)
+        coupling = np.sqrt(np.diag(mixed[:k, k:]) * np.diag(mixed[k:, :k]))
+        if not (coupling < COUPLED * moduli * np.abs(np.log(moduli)))[moduli >= FADED].all():
+            return False
+    return True
+
+
 @lru_cache(maxsize=4)
 def _coupling(own: Spectrum, other: Spectrum) -> Array:
     """How much each two pairs of an orbit mix in the monodromy matrix of another, (pairs, pairs).
@@ -190,16 +212,7 @@ def _coupling(own: Spectrum, other: Spectrum) -> Array:
     The geometric mean of both ways, by which they may part where they meet. As much as can be where the two
     are known in other coordinates.
     """
-    chosen = [pair.place for pair in own.pairs]
-    both = np.concatenate([own.vectors[:, chosen], own.vectors[:, chosen].conj()], axis=1)
-    matrix = _in_frame_of(own, other)
-    if matrix is None:
-        return np.full((len(chosen), len(chosen)), np.inf)
-    try:
-        mixed = np.abs(np.linalg.pinv(both) @ matrix @ both)
-    except np.linalg.LinAlgError:
-        return np.full((len(chosen), len(chosen)), np.inf)
-    k = len(chosen)
+    k, mixed = len(own.pairs), _mixed(own, other)
     blocks = [
         mixed[rows, columns]
         for rows in (slice(0, k), slice(k, None))
@@ -207,6 +220,18 @@ def _coupling(own: Spectrum, other: Spectrum) -> Array:
     ]
     largest = np.max(blocks, axis=0)
     return np.asarray(np.sqrt(largest * largest.T))
+
+
+def _mixed(own: Spectrum, other: Spectrum) -> Array:
+    """The size of what each multiplier of the pairs of an orbit, then of their conjugates, becomes of each
+    in the monodromy matrix of another; infinite where that is not known."""
+    chosen = [pair.place for pair in own.pairs]
+    both = np.concatenate([own.vectors[:, chosen], own.vectors[:, chosen].conj()], axis=1)
+    matrix = _in_frame_of(own, other)
+    if matrix is not None:
+        with contextlib.suppress(np.linalg.LinAlgError):
+            return np.abs(np.linalg.pinv(both) @ matrix @ both)
+    return np.full((both.shape[1], both.shape[1]), np.inf)
 
 
 def _in_frame_of(own: Spectrum, other: Spectrum) -> Array | None:

@@ -44,10 +44,11 @@ def _integrated(method: Discretisation, system: System, start: Orbit) -> Iterato
     for wanted in (STILL, CLOSE):
         if not motion.settles(wanted):
             return
-        orbit, path = motion.orbit(), motion.path
-        yield orbit or sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
-        if orbit is None:
+        if (orbit := motion.orbit()) is None:
+            path = motion.samples()
+            yield sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
             return
+        yield orbit
 
 
 def held(system: System, motion: Orbit) -> list[str]:

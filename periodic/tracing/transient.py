@@ -13,12 +13,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy
 
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.outcome import FAILURES
 from periodic.correction.tolerance import Accuracy
 from periodic.events.motions import FOLLOWED, PERIODS, STILL, has_words, motion_from, orbit_of
 from periodic.orbit.orbit import FORCED, Orbit
+from periodic.orbit.sampling import FARTHEST_SAMPLE
 from periodic.orbit.scheme import Array
 from periodic.system import Moving, TrajectoryLike
 from periodic.tracing.closing import Closing
@@ -38,7 +40,10 @@ BETWEEN = TRANSIENTS[0]
 """Periods after which `Closing` is tried, and again and again: it takes few."""
 
 PLACES_IN_PERIOD = 193
-"""Phases in a period at which the motion is computed."""
+"""Phases in a period at which the motion is computed,"""
+
+MOST_PLACES = 2**6 * (PLACES_IN_PERIOD - 1) + 1
+"""... and at the most once it has settled, so that every other one shows what lies between."""
 
 
 Place = tuple[Array, Array, Sequence[int] | None]
@@ -82,15 +87,29 @@ class Transient:
         """Return the next period as a guess of an orbit: see `periodic.events.motions.orbit_of`."""
         return self._read(*self.place, FOLLOWED)
 
+    def samples(self) -> TrajectoryLike:
+        """Return the next period at phases enough that cubics through every other one show the others."""
+        places = PLACES_IN_PERIOD
+        while True:
+            path = self._followed(*self.place, places)
+            size = np.maximum(np.ptp(path.state, axis=0), Accuracy.STANDARD)
+            between = scipy.interpolate.PchipInterpolator(path.phase[::2], path.state[::2], axis=0)
+            missed = np.abs(between(path.phase[1::2]) - path.state[1::2]).max(axis=0)
+            if (missed < FARTHEST_SAMPLE * size).all() or places >= MOST_PLACES:
+                return path
+            places = 2 * places - 1
+
     def _read(
         self, state: Array, algebraic: Array, modes: Sequence[int] | None, tolerance: float
     ) -> Orbit | None:
         """The period from a place as a guess of an orbit."""
         return orbit_of(self.system, state, algebraic, self.parameter, tolerance, before=modes)
 
-    def _followed(self, state: Array, algebraic: Array, modes: Sequence[int] | None) -> TrajectoryLike:
+    def _followed(
+        self, state: Array, algebraic: Array, modes: Sequence[int] | None, places: int = PLACES_IN_PERIOD
+    ) -> TrajectoryLike:
         """A period from a place."""
-        phase = np.linspace(0, FORCED, PLACES_IN_PERIOD)
+        phase = np.linspace(0, FORCED, places)
         return motion_from(self.system, state, algebraic, self.parameter, phase, Accuracy.STANDARD, modes)
 
     def _period(self, place: Place) -> bool:
