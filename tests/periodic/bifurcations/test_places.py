@@ -106,6 +106,23 @@ def test_place_of_another_sign_between_the_ends() -> None:
     assert found is not None and abs(found - 0.45) < 0.05
 
 
+@pytest.mark.parametrize("confined", [(True, True), (False, True), (True, False)])
+def test_no_place_is_looked_for_among_solutions_that_tell_there_is_none(confined: tuple[bool, bool]) -> None:
+    """Assert that dips are left after the first where the step's end and the place of the dip tell so."""
+    asked = list[float]()
+
+    def value(distance: float) -> float:
+        asked.append(distance)
+        return 4 * (distance - 0.45) ** 2 - 0.01
+
+    within: Any = Within(value)
+    told = dict(zip((1.0, 0.1), confined, strict=True))
+    test = margin(dips=lambda *_: [(0.1, 0.48), (0.45, 0.0)], confined=lambda _, new: told.get(new.distance))
+    found = location.sign_between(within, within.new, 1.0, test)
+    assert (found is None) == all(confined)
+    assert not all(confined) or max(set(asked) - {0.0, 1.0}) == 0.1
+
+
 @pytest.mark.parametrize(
     ("cosine", "resting", "rejected"),
     [(0.81, True, False), (0.79, True, True), (-0.9, True, True), (0.5, False, False)],

@@ -88,6 +88,17 @@ def test_two_negative_multipliers_may_pass(
     assert doubling.doubles_twice(having(*base), having(*new)) is twice
 
 
+@pytest.mark.parametrize("confined", [True, False])
+def test_doublings_are_looked_for_of_real_multipliers_whatever_pairs_do(
+    confined: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert that a step is without doublings where pairs are confined and no two are real and negative."""
+    monkeypatch.setattr(doubling, "confined", lambda *_: confined)
+    assert doubling.kept_from_doubling(having(0.5, -0.3), having(0.5, 0.3)) is confined
+    assert not doubling.kept_from_doubling(having(-0.5, -0.3), having(0.5, 0.3))
+    assert not doubling.kept_from_doubling(having(0.5, 0.3), having(-0.5, -0.3))
+
+
 def test_value_at_the_dip_of_a_pair(monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert ((1 - r) / (1 + r))^2 for a pair of modulus r = 0.6 that turns past: (0.4 / 1.6)^2."""
     monkeypatch.setattr(doubling, "pair_crossings", lambda *_: [(0.25, 0.6)])

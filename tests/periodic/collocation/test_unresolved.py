@@ -116,11 +116,16 @@ def test_rates_beyond_all_numbers() -> None:
     assert lost(system, replace(orbit, parameter=np.array(values))) == 0.0
 
 
-@pytest.mark.parametrize(("nodes", "most"), [(0, 100), (10, 100), (11, 110), (46, 460)])
-def test_intervals_in_proportion_to_event_nodes(nodes: int, most: int) -> None:
-    """Assert the largest number of intervals: that of the settings up to ten, in proportion beyond."""
+@pytest.mark.parametrize(
+    ("nodes", "reversals", "most"),
+    [(0, 0, 100), (10, 10, 100), (11, 4, 110), (46, 45, 460), (4, 11, 110), (46, 300, 3000)],
+)
+def test_intervals_in_proportion_to_what_happens(nodes: int, reversals: int, most: int) -> None:
+    """Assert the largest number of intervals: that of the settings for up to ten event nodes and reversals
+    of the state that has most, in proportion to either beyond."""
+    waves = np.column_stack([np.arange(400.0), np.cos(np.pi * np.minimum(np.arange(400), reversals + 1))])
     for ntst, full in ((most - 1, False), (most, True)):
-        orbit = SimpleNamespace(phases=np.zeros(nodes), mesh=SimpleNamespace(ntst=ntst))
+        orbit = SimpleNamespace(phases=np.zeros(nodes), mesh=SimpleNamespace(ntst=ntst), nodes=waves)
         method = per.Collocation(ntst_max=100)
         given: Any = SimpleNamespace(orbit=orbit, method=method, _in_wrong_mode=False)
         given._largest = CollocationRefinement._largest.fget(given)  # type: ignore[attr-defined]

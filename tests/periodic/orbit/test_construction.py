@@ -140,6 +140,16 @@ def test_graded_mesh_follows_the_arclength_of_samples() -> None:
     assert mesh.breaks[0] == pytest.approx(exact, abs=0.002) and mesh.period == 2 * np.pi
 
 
+@pytest.mark.parametrize(("vibrations", "most"), [(3, 96), (60, 1536), (300, 6144)])
+def test_samples_of_many_vibrations_have_a_mesh_for_them(vibrations: int, most: int) -> None:
+    """Assert the samples on the first of the meshes that shows them, to a hundredth of the peak to peak."""
+    phase = np.linspace(0, 2 * np.pi, 40 * vibrations + 1)
+    state = np.column_stack([np.cos(vibrations * phase), np.sin(vibrations * phase)])
+    orbit = sampling.sampled(phase, state, parameter=np.zeros(1))
+    assert orbit.mesh.ntst <= most
+    assert np.abs(orbit.state(phase) - state).max() < 0.02
+
+
 @pytest.mark.parametrize(
     "phase",
     [

@@ -10,7 +10,7 @@ import pytest
 
 from periodic.condensed.floquet import LeadingSpectrum
 from periodic.stability.multipliers import Spectrum
-from periodic.stability.winding import collisions
+from periodic.stability.winding import FADED, collisions, confined, pair_crossings
 
 TURN = 2 * np.pi
 
@@ -54,3 +54,51 @@ def test_subspaces_of_other_sizes_are_compared() -> None:
         leading = cast(Any, SimpleNamespace(basis=basis, states=basis[None]))
         ends.append(LeadingSpectrum(matrix, 0, leading))
     assert len(collisions(*ends)) > 0
+
+
+def coupled(radius: float, argument: float, coupling: float) -> Spectrum:
+    """A pair of modulus `radius` at an argument, coupled to its conjugate.
+
+    Its multipliers are r (cos a +- (c^2 - sin^2 a)^(1/2)): a complex pair but where sin a is less than the
+    coupling c, where they part and one reaches r (1 + c) at the most.
+    """
+    cos, sin = np.cos(argument), np.sin(argument)
+    return Spectrum(np.array([[[cos + coupling, -sin], [sin, cos - coupling]]]) * radius)
+
+
+@pytest.mark.parametrize("radius", [1e-2, 0.3, 0.8, 0.97])
+@pytest.mark.parametrize(("begin", "end"), [(-0.6, 0.5), (-0.3, 0.6), (-0.5, 0.02)])
+def test_pairs_that_may_leave_the_circle_are_told(radius: float, begin: float, end: float) -> None:
+    """Assert it of a pair whose greater multiplier, r (1 + c), would reach 1, if it is complex at both ends.
+
+    None that is not coupled may, nor one coupled a hundred times too little.
+    """
+    needed = 1 / radius - 1
+    if needed < np.sin(0.3):
+        assert not confined(coupled(radius, begin, needed), coupled(radius, -begin, needed))
+    for less in (0.0, 0.01 * min(needed, abs(np.sin(end)))):
+        assert confined(coupled(radius, begin, less), coupled(radius, end, less))
+
+
+def test_pairs_in_other_coordinates_may_leave_the_circle() -> None:
+    """Assert it where it cannot be known, whatever their coupling."""
+    basis = np.eye(3)[:, :2]
+    other = LeadingSpectrum(
+        turning((0.9, 0.2), mixed=0.0), 0, cast(Any, SimpleNamespace(basis=basis, states=basis[None]))
+    )
+    wider = np.eye(4)[:, :2]
+    again = LeadingSpectrum(
+        turning((0.9, 0.1), mixed=0.0), 0, cast(Any, SimpleNamespace(basis=wider, states=wider[None]))
+    )
+    assert confined(other, other) and not confined(other, again)
+
+
+def test_pairs_that_have_faded_pass_unseen() -> None:
+    """Assert that a pair that turns past 1 counts where one end is nearer the circle than FADED."""
+    first, last, near = (
+        Spectrum(turning((part * FADED, argument), mixed=0.0))
+        for part, argument in ((0.5, TURN - 0.2), (0.9, TURN + 0.3), (1.1, TURN + 0.3))
+    )
+    assert pair_crossings(first, last, 1) == [] and confined(first, last)
+    (found,) = pair_crossings(first, near, 1)
+    assert found[0] == pytest.approx(0.4) and pair_crossings(first, near, -1) == []

@@ -91,3 +91,17 @@ def test_distance_from_coming_back(gap: float, size: float, part: float) -> None
     """Assert it as a part of the largest peak to peak of a state."""
     path = np.array([[0.0, 0.0], [size, 0.1 * size], [gap, 0.0]])
     assert transient.apart(path) == pytest.approx(part)
+
+
+@pytest.mark.parametrize(("vibrations", "places"), [(2, 193), (50, 3073), (10**6, transient.MOST_PLACES)])
+def test_samples_show_the_motion_between_them(vibrations: int, places: int) -> None:
+    """Assert that the number of phases is doubled until every other one shows the motion; not for ever."""
+
+    def motion(state: Array, algebraic: Array, parameter: Array, phase: Array, *rest: Any) -> Any:
+        wave = np.cos(vibrations * phase + 0.3)[:, None]
+        return SimpleNamespace(phase=phase, state=wave, algebraic=np.zeros((len(phase), 0)), modes=())
+
+    begin = np.ones(1), np.zeros(0), None
+    system = SimpleNamespace(motion=motion, surfaces=())
+    found = Transient(None, system, np.zeros(0), begin).samples()  # type: ignore[arg-type]
+    assert len(found.phase) == places and found.phase[-1] == 2 * np.pi
