@@ -287,7 +287,8 @@ class CollocationRefinement(Refinement):
         """Where the multipliers need more intervals."""
         if self._in_wrong_mode or self._longer is not None:
             return None
-        return demand(self.orbit, self.error, self.method.tolerance, self._largest)
+        most = self.method.ntst_max * max(MANY, len(self.orbit.phases)) // MANY
+        return demand(self.orbit, self.error, self.method.tolerance, most)
 
     def refined(self) -> Mesh:
         """Return a mesh with intervals where the orbit needs them, and its present event nodes.

@@ -193,16 +193,28 @@ def _growth(before: Pair, after: Pair, place: float) -> float:
 def confined(before: Spectrum, after: Spectrum) -> bool:
     """Whether no pair is coupled enough to its own conjugate to leave the unit circle at +1 or -1.
 
-    As far as two orbits tell: at the one mu and its conjugate are eigenvalues, at the other they mix where
-    they are coupled and turned by another angle from where they meet.
+    As far as two orbits tell. At the one, mu = r exp(i a) and its conjugate are eigenvalues; at the other,
+    where the pair has turned to b, they mix by r c (1 - sin b / sin a), c the coupling by which they part
+    where they meet. The less of both ways is taken, which is never far above r c.
     """
-    for own, other in ((before, after), (after, before)):
-        k, moduli = len(own.pairs), np.array([pair.modulus for pair in own.pairs])
-        mixed = _mixed(own, other)
-        coupling = np.sqrt(np.diag(mixed[:k, k:]) * np.diag(mixed[k:, :k]))
-        if not (coupling < COUPLED * moduli * np.abs(np.log(moduli)))[moduli >= FADED].all():
+    first, last = _own_coupling(before, after), _own_coupling(after, before)
+    for a, b in _matched(before, after):
+        modulus = max(a.modulus, b.modulus)
+        coupling = min(first[a.place], last[b.place])
+        if modulus >= FADED and not coupling < COUPLED * abs(math.log(modulus)):
             return False
     return True
+
+
+def _own_coupling(own: Spectrum, other: Spectrum) -> dict[int, float]:
+    """How much each pair of an orbit mixes with its conjugate in the monodromy matrix of another.
+
+    In parts of its modulus, by its place among the multipliers.
+    """
+    k, mixed = len(own.pairs), _mixed(own, other)
+    both = np.sqrt(np.diag(mixed[:k, k:]) * np.diag(mixed[k:, :k]))
+    each = zip(own.pairs, both.tolist(), strict=True)
+    return {pair.place: size / pair.modulus for pair, size in each}
 
 
 @lru_cache(maxsize=4)

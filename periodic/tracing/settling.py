@@ -11,10 +11,10 @@ import numpy as np
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.outcome import FAILURES
 from periodic.correction.tolerance import Accuracy
-from periodic.events.motions import STILL
+from periodic.events.motions import STILL, has_words
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.sampling import sampled
-from periodic.system import STUCK, Moving, System, surfaces_of
+from periodic.system import STUCK, Moving, System, TrajectoryLike, surfaces_of
 from periodic.tracing.transient import CLOSE, Transient
 
 
@@ -22,8 +22,9 @@ def settled(method: Discretisation, system: System, start: Orbit) -> Iterator[Or
     """Yield the motion to which a system settles from the beginning of an orbit, with its parameters.
 
     By the method's own simulation, or by integration of all states; then the same motion settled further.
-    Nothing where it does not settle within PERIODS, and for a system that cannot be integrated. Raises
-    FAILURES where its integration fails.
+    Of a system without words whose motion does not settle within PERIODS the periods that came back closest;
+    of others nothing then, nor for a system that cannot be integrated. Raises FAILURES where its integration
+    fails.
     """
     own = method.settled(system, start)
     yield from _integrated(method, system, start) if own is None else own
@@ -43,12 +44,18 @@ def _integrated(method: Discretisation, system: System, start: Orbit) -> Iterato
     motion = Transient(method, cast(Moving, system), start.parameter, begin)
     for wanted in (STILL, CLOSE):
         if not motion.settles(wanted):
+            if not has_words(motion.system):
+                yield from (_through(system, path, start) for path in motion.returns())
             return
         if (orbit := motion.orbit()) is None:
-            path = motion.samples()
-            yield sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
+            yield _through(system, motion.samples(), start)
             return
         yield orbit
+
+
+def _through(system: System, path: TrajectoryLike, start: Orbit) -> Orbit:
+    """The orbit through a path, with the parameters of the beginning."""
+    return sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
 
 
 def held(system: System, motion: Orbit) -> list[str]:

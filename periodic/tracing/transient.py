@@ -3,13 +3,13 @@
 A motion that settles slowly, or never, as it is chaotic or repeats itself after several periods, comes near
 orbits of one period now and then. From the closest returns Newton's method finds them (Lathrop & Kostelich,
 Phys. Rev. A 40 (1989) 4028, look for them there). Where words are read from motions it goes by `Closing`,
-else by `ReturnMap`.
+else by `ReturnMap`, or from the whole of a period, of which no part need grow much.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -45,6 +45,9 @@ PLACES_IN_PERIOD = 193
 MOST_PLACES = 2**6 * (PLACES_IN_PERIOD - 1) + 1
 """... and at the most once it has settled, so that every other one shows what lies between."""
 
+RETURNS = 4
+"""Closest returns of a motion that never settles that are guesses of orbits."""
+
 
 Place = tuple[Array, Array, Sequence[int] | None]
 """Where a period begins: the state, the unknowns, and the modes before, where they are known."""
@@ -66,6 +69,7 @@ class Transient:
     _turn: int = field(default=TRANSIENTS[0], init=False)
     _apart: list[float] = field(default_factory=list, init=False)
     _closest: tuple[float, Place] | None = field(default=None, init=False)
+    _returns: list[tuple[float, Place]] = field(default_factory=list, init=False)
 
     def settles(self, wanted: float) -> bool:
         """Go on until the motion comes back but for a part of its peak to peak, or is near an orbit.
@@ -87,11 +91,19 @@ class Transient:
         """Return the next period as a guess of an orbit: see `periodic.events.motions.orbit_of`."""
         return self._read(*self.place, FOLLOWED)
 
-    def samples(self) -> TrajectoryLike:
-        """Return the next period at phases enough that cubics through every other one show the others."""
+    def returns(self) -> Iterator[TrajectoryLike]:
+        """Yield the periods that came back closest, the closest first."""
+        for _, place in sorted(self._returns, key=lambda each: each[0])[:RETURNS]:
+            yield self.samples(place)
+
+    def samples(self, place: Place | None = None) -> TrajectoryLike:
+        """Return a period at phases enough that cubics through every other one show the others.
+
+        The next one, or that from a place.
+        """
         places = PLACES_IN_PERIOD
         while True:
-            path = self._followed(*self.place, places)
+            path = self._followed(*(place or self.place), places)
             size = np.maximum(np.ptp(path.state, axis=0), Accuracy.STANDARD)
             between = scipy.interpolate.PchipInterpolator(path.phase[::2], path.state[::2], axis=0)
             missed = np.abs(between(path.phase[1::2]) - path.state[1::2]).max(axis=0)
@@ -120,6 +132,7 @@ class Transient:
         self.place = path.state[-1], path.algebraic[-1], path.modes
         self._count += 1
         self._apart.append(apart(path.state))
+        self._returns.append((self._apart[-1], place))
         if self._closest is None or self._apart[-1] < self._closest[0]:
             self._closest = self._apart[-1], place
         return True

@@ -105,3 +105,17 @@ def test_samples_show_the_motion_between_them(vibrations: int, places: int) -> N
     system = SimpleNamespace(motion=motion, surfaces=())
     found = Transient(None, system, np.zeros(0), begin).samples()  # type: ignore[arg-type]
     assert len(found.phase) == places and found.phase[-1] == 2 * np.pi
+
+
+def test_closest_returns_of_a_motion_that_never_settles() -> None:
+    """Assert the periods that came back closest, in order, of a map that moves on by as much as is drawn."""
+    moves = np.random.default_rng(1).uniform(1.0, 2.0, PERIODS)
+    each = iter(moves)
+    system, motion = settling(lambda x: x + next(each), 0.0)
+    motion._turn = PERIODS + 1
+    assert not motion.settles(STILL) and len(system.begun) == PERIODS
+    begins = np.append(0.0, np.cumsum(moves))
+    apart = moves / np.maximum(begins[1:], 1.0)  # the motion goes through 0 and 1
+    motion.samples = lambda place=None: place  # type: ignore[method-assign,assignment,return-value]
+    found = [place[0].item() for place in motion.returns()]  # type: ignore[index]
+    assert found == pytest.approx(begins[np.argsort(apart)[: transient.RETURNS]])

@@ -21,7 +21,7 @@ TOL = 1e-6
 SEEDS = 20
 """Machines of a family; each is traced from both ends."""
 
-SECONDS = 120.0
+SECONDS = 300.0
 """CPU seconds that a branch may take."""
 
 CONTROL = per.ArclengthControl(max_points=4000, max_newton=60000)
