@@ -263,8 +263,8 @@ class Structure(Part):
             Where two modes meet.
         """
         form = self.modal(speed)
-        if not form.own or self._held and not self.modal_damping.none:
-            return None
+        if not form.own or not self.modal_damping.none and (callable(self.M) or callable(self.K)):
+            return None  # with them modal damping changes
         mass, damping, stiffness, gyroscopic = (
             _steepness(given, speed, self.size) for given in (self.M, self.C, self.K, self.G)
         )

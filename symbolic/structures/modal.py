@@ -56,7 +56,7 @@ class ModalForm:
     matrices : Matrices
         The matrices that they are of.
     own : bool
-        Whether they are modes of M, C, K and G as given, without modal damping.
+        Whether they are all modes of M, C, K and G as given, and of modal damping as a matrix.
     undamped : ndarray, shape (n, J), optional
         The undamped modes phi, phi' M phi = 1, where some modes are left out.
     """
@@ -150,7 +150,7 @@ def modal_form(
         )
     if not damping.none:
         own = dense(own) + damping.matrix(matrices)
-    return replace(_coupled(name, matrices, dense(own)), own=damping.none)
+    return replace(_coupled(name, matrices, dense(own)), own=True)
 
 
 def refuse_inexact(name: str, form: ModalForm, freedoms: Sequence[int]) -> None:

@@ -127,7 +127,7 @@ def test_modal_damping_beside_a_stiffness_that_holds() -> None:
     damped = modal_form("s", coupled, ModalDamping(0.1), 3.0, None)
     inverse = (4 - 1.5**2) * np.eye(2) + 1.5j * (0.4 * np.eye(2) + 3.0 * np.array([[0, 0.5], [-0.5, 0]]))
     assert response(damped, 1.5) == pytest.approx(np.linalg.inv(inverse), rel=1e-9)
-    assert not damped.own and modal_form("s", coupled, ModalDamping(), 3.0, None).own
+    assert damped.own and modal_form("s", coupled, ModalDamping(), 3.0, None).own and not form.own
 
 
 def test_stiffness_added_at_some_freedoms() -> None:

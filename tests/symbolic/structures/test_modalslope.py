@@ -18,15 +18,16 @@ def flexibility(parts: tuple[Complex, Complex, Complex], frequency: complex) -> 
     return np.asarray(total)
 
 
-@pytest.mark.parametrize("loaded", [False, True])
-def test_flexibility_changes_as_its_matrices_do(loaded: bool) -> None:
-    """Assert dH = -H (s^2 M' + s C' + K') H to 8 digits, of gyroscopic terms alone and of all matrices."""
+@pytest.mark.parametrize("kind", ["gyroscopic", "damped", "loaded"])
+def test_flexibility_changes_as_its_matrices_do(kind: str) -> None:
+    """Assert dH = -H (s^2 M' + s C' + K') H to 8 digits, of gyroscopic terms alone, also beside Rayleigh
+    damping, and of all matrices."""
     n, speed, step = 4, 3.0, 1e-4
     random = np.random.default_rng(3)
     one, two, three, four = random.standard_normal((4, n, n))
     mass, stiffness, gyroscopic = np.eye(n) + 0.1 * one @ one.T, 9 * np.eye(n) + two @ two.T, four - four.T
     damping = 0.2 * np.eye(n) + 0.05 * three @ three.T
-    if loaded:
+    if kind == "loaded":
         structure = sym.Structure(
             lambda w: mass * (1 + 0.01 * w),
             lambda w: damping + 0.02 * w * three,
@@ -34,7 +35,8 @@ def test_flexibility_changes_as_its_matrices_do(loaded: bool) -> None:
         )
         slopes = 0.01 * mass, 0.02 * three, one
     else:
-        structure = sym.Structure(mass, damping, stiffness, gyroscopic)
+        more = {"rayleigh": (0.05, 0.01)} if kind == "damped" else {}
+        structure = sym.Structure(mass, damping, stiffness, gyroscopic, **more)  # type: ignore[arg-type]
         slopes = np.zeros((n, n)), gyroscopic, np.zeros((n, n))
     form, slope = structure.modal(speed), structure.modal_slope(speed)
     assert slope is not None
@@ -55,6 +57,28 @@ def test_modes_damped_one_by_one_are_left_to_differences() -> None:
     """Assert that no closed form is given where a ratio of each mode's damping changes with the speed."""
     structure = sym.Structure(np.eye(2), None, lambda w: np.diag([4.0, 9.0]) + w, damping=0.01)
     assert structure.modal_slope(1.0) is None
+    turned = np.array([[0.0, 1.0], [-1.0, 0.0]])
+    coupled = sym.Structure(np.eye(2), None, lambda w: np.diag([4.0, 9.0]) + w, turned, damping=0.01)
+    assert coupled.modal(1.0).own and coupled.modal_slope(1.0) is None
+
+
+@pytest.mark.parametrize("damping", [{}, {"rayleigh": (0.0, 1e-3)}])
+def test_rotor_whose_modes_meet_in_pairs(damping: dict[str, tuple[float, float]]) -> None:
+    """Assert that modes of a rotor alike in both planes are followed, with Rayleigh damping or without.
+
+    At rest each is double; discs that do not tilt leave some so at any speed.
+    """
+    turned = np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), np.diag([0.0, 0.3]))
+    stiffness = np.kron(np.eye(2), np.array([[4.0, 0.0], [0.0, 9.0]]))
+    rotor = sym.Structure(np.eye(4), 0.01 * np.eye(4), stiffness, turned, **damping)  # type: ignore[arg-type]
+    slope = rotor.modal_slope(2.0)
+    assert slope is not None
+    step = 1e-5
+    ends = [rotor.modal(2.0 + sign * step).exponents for sign in (1, -1)]
+    found = [
+        min(abs(e - value) for e in ends[0]) for value in rotor.modal(2.0).exponents + step * slope.exponents
+    ]
+    assert max(found) < 1e-8
 
 
 @pytest.mark.parametrize("size", [1e-12, 1e-5, 1e4])

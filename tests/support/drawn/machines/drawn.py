@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from support.drawn.machines import bearings, gears, rotors, structures
+from support.drawn.machines import bearings, gears, ross, rotors, structures
 from support.drawn.machines.machine import Machine, Random
 
 FAMILIES: dict[str, Callable[[Random], Machine]] = {
@@ -19,6 +19,7 @@ FAMILIES: dict[str, Callable[[Random], Machine]] = {
     "squeeze-film dampers": rotors.dampers,
     "rubs": rotors.rubs,
     "shafts in films": rotors.shafts,
+    "shafts of ROSS": ross.shafts,
     "friction dampers": structures.friction,
     "beams with stops": structures.beams,
 }
