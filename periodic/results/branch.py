@@ -16,6 +16,7 @@ from periodic.checks import one_of
 from periodic.correction.error import shortfall
 from periodic.orbit.scheme import Array
 from periodic.results import frames, netcdf
+from periodic.results.atvalue import points_at_value
 from periodic.results.betweenpoints import PER_SEGMENT, curve, slopes_of, smooth
 from periodic.results.branchoverview import branch_html
 from periodic.results.peaks import PEAK_OF, labelled_corners, usual_peaks
@@ -59,6 +60,8 @@ class Branch(Record):
         Number of points at its begin that the first of two runs computed.
     made : dict
         The settings that it was computed with, by value: see `periodic.results.described`.
+    onwards : callable, optional
+        How it was traced, for `at`; a file does not keep it.
     """
 
     def __repr__(self) -> str:
@@ -123,6 +126,38 @@ class Branch(Record):
         if label and label not in known:
             raise ValueError(f"label is {str(label)!r}; it must be one of {', '.join(known)}")
         return tuple(p for p in self.points if label == p.label or (label and label == p.event))
+
+    def at(self, **value: float) -> tuple[Point, ...]:
+        """Return the points at a value of the parameter, also between those that it has.
+
+        Parameters
+        ----------
+        **value : float
+            The parameter by its name, SI, as ``branch.at(Omega=2.0)``.
+
+        Returns
+        -------
+        tuple of Point
+            One for each time that the branch passes the value, in order along the branch, solved at the value
+            itself to the tolerance.
+
+        Raises
+        ------
+        ValueError
+            For another name, a value that the branch does not pass, and a branch from a file, which does not
+            know its system.
+        ArithmeticError
+            Where the value is not reached from the points beside it.
+        """
+        if list(value) != [self.parameter]:
+            given = ", ".join(value) or "nothing"
+            raise ValueError(f"at is given {given}; it takes {self.parameter}, as at({self.parameter}=1.0)")
+        if self.onwards is None:
+            raise ValueError(
+                f"the branch is from a file, which does not know its system; "
+                f"points_at(system, branch, {value[self.parameter]:g}) does"
+            )
+        return points_at_value(self, self.onwards, value[self.parameter])
 
     @property
     def peaks(self) -> dict[str, tuple[Point, ...]]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from periodic.orbit.layout import Layout
+from periodic.results.atvalue import Onwards
 from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point
 from periodic.results.stop import Stop
@@ -26,3 +27,4 @@ class Record:
     checkpoints: tuple[Checkpoint, ...] = ()
     backwards: int = 0
     made: dict[str, Any] = field(default_factory=dict)
+    onwards: Onwards | None = None

@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from importlib import metadata
 from pathlib import Path
 
@@ -174,7 +174,10 @@ def trace(
         before = guess
         guess = None if begun_from_rest(before) else start_of(before).orbit
     ready = setup(problem, chosen, start=start, at=at, guess=guess, values=values)
-    empty = joined(parameter, layout_of(system), [], made_with(ready))
+    onwards = partial(
+        trace, system, parameter, tol=tol, determined=determined, method=method, watch=Watch(peaks={})
+    )
+    empty = replace(joined(parameter, layout_of(system), [], made_with(ready)), onwards=onwards)
     if before is not None:
         check(before, ready)
         ready.work.iterations = before.newton_iterations
@@ -266,6 +269,7 @@ def _joined(empty: Branch, runs: list[Continuation], elapsed: float, before: Bra
         newton_iterations=runs[0].solver.work.iterations,
         elapsed=elapsed + (before.elapsed if before else 0.0),
         versions={name: _version(name) for name in ("orbitrace", "numpy", "scipy")},
+        onwards=empty.onwards,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,43 @@ def test_three_orbits_of_one_speed() -> None:
         assert point.maximum["x"] == pytest.approx(other.maximum["x"], rel=1e-6)
         assert np.sort(abs(point.multipliers)) == pytest.approx(np.sort(abs(other.multipliers)), abs=1e-6)
         assert point.stable is other.stable
+
+
+def test_a_branch_has_its_orbits_at_any_value(tmp_path: Path) -> None:
+    """Assert those of `points_at`, digit by digit, with the settings that it was traced with; from a file,
+    which does not know its system, and for other names the sentence."""
+    system = duffing()
+    branch = per.trace(system, "Omega", (0.5, 3.0), start=0.5, tol=1e-8)
+    found = branch.at(Omega=1.7)
+    assert [p.maximum for p in found] == [p.maximum for p in per.points_at(system, branch, 1.7, tol=1e-8)]
+    assert len(found) == 3 and max(point.error.orbit for point in found) < 1e-8
+    with pytest.raises(ValueError, match=r"^at is given omega; it takes Omega, as at\(Omega=1.0\)$"):
+        branch.at(omega=1.7)
+    with pytest.raises(ValueError, match="^at is given nothing; it takes Omega"):
+        branch.at()
+    branch.save(tmp_path / "kept.nc")
+    said = "^the branch is from a file, which does not know its system; points_at.system, branch, 1.7. does$"
+    with pytest.raises(ValueError, match=said):
+        per.Branch.load(tmp_path / "kept.nc").at(Omega=1.7)
+
+
+def test_an_interrupted_branch_has_them_too() -> None:
+    """Assert it of the part there is, and of the branch that goes on from a file."""
+    system = duffing()
+
+    seen = list[float]()
+
+    def progress(point: per.Point) -> None:
+        seen.append(point.parameter)
+        if len(seen) == 5:
+            raise KeyboardInterrupt
+
+    with pytest.raises(per.Interrupted) as caught:
+        per.trace(system, "Omega", (0.5, 3.0), start=3.0, watch=per.Watch(progress=progress))
+    part = caught.value.branch
+    middle = (part[1].parameter + part[2].parameter) / 2
+    (point,) = part.at(Omega=middle)
+    assert point.parameter == middle
 
 
 def test_points_that_the_branch_has() -> None:
