@@ -80,7 +80,8 @@ class Row:
     shortfall: its points whose estimates exceed the tolerance, as the branch says. unjudged: points that
     the reference does not follow. strays: points, of all, that do not keep their words on samples.
     ratio: the largest error over what is claimed, at least the tolerance. engine: the last commit that
-    changed the engine that traced it, with a + where there were changes besides.
+    changed the engine that traced it, with a + where there were changes besides. memory: the most that its
+    process had, in GB, where it had one of its own.
     """
 
     kind: str
@@ -99,6 +100,7 @@ class Row:
     engine: str = ""
     retraced: bool = True
     strays: tuple[str, ...] = ()
+    memory: float = 0.0
 
     @property
     def fate(self) -> str:

@@ -9,11 +9,13 @@ stopped goes on where it was, and several processes, each with a file of its own
 from __future__ import annotations
 
 import argparse
+import multiprocessing
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from survey.machines.page import page
 from survey.machines.rows import SEEDS, models, row
-from survey.rows import read, write
+from survey.rows import Row, read, write
 
 
 def main() -> int:
@@ -30,7 +32,7 @@ def main() -> int:
         part, parts = map(int, given.share.split("/"))
         for kind, seed in wanted[part::parts]:
             if (kind, seed) not in done:
-                done[kind, seed] = found = row(kind, seed)
+                done[kind, seed] = found = _alone(kind, seed)
                 write(given.rows[0], found)
                 print(f"{kind} {seed}: {found.told}, {found.points} points, {found.seconds} s", flush=True)
                 for said in (*found.wrong, *found.gaps):
@@ -38,6 +40,12 @@ def main() -> int:
     else:
         given.page.write_text(page([done[model] for model in wanted if model in done]), "utf-8")
     return int(any(found.wrong for found in done.values()))
+
+
+def _alone(kind: str, seed: int) -> Row:
+    """A row from a process of its own, whose memory is then that of the trace."""
+    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as executor:
+        return executor.submit(row, kind, seed).result()
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import resource
 import time
 import warnings
 from collections.abc import Iterator
@@ -32,22 +33,38 @@ JUDGED = 10
 DOWN = " down"
 """Ends the kind of a row that is traced from the upper end."""
 
+OTHERS = {" at 1e-3": 1e-3, " at 1e-9": 1e-9}
+"""Ends of kinds that are traced at other tolerances, a tenth of the machines."""
+
 
 def models(seeds: int = SEEDS) -> Iterator[tuple[str, int]]:
-    """Yield kind and seed of all, the families in turn, so that a part of them is a sample."""
+    """Yield kind and seed of all, the families in turn, so that a part of them is a sample.
+
+    At last a tenth of the machines at the other tolerances.
+    """
     for seed in range(seeds):
         yield from ((family + way, seed) for family in FAMILIES for way in ("", DOWN))
+    for seed in range(seeds // 10):
+        kinds = [family + way for family in FAMILIES for way in ("", DOWN)]
+        yield from ((kind + at, seed) for kind in kinds for at in OTHERS)
+
+
+def parts(kind: str) -> tuple[str, bool, float]:
+    """Return the family of a kind, whether it is traced from the upper end, and at which tolerance."""
+    at = next((end for end in OTHERS if kind.endswith(end)), "")
+    way = kind.removesuffix(at)
+    return way.removesuffix(DOWN), way.endswith(DOWN), OTHERS.get(at, TOL)
 
 
 def row(kind: str, seed: int, count: int = JUDGED) -> Row:
     """Trace a machine and judge as many points. Any warning or exception is recorded as wrong."""
-    begun = time.process_time()
+    begun, (family, down, tol) = time.process_time(), parts(kind)
     try:
-        drawn = machine(kind.removesuffix(DOWN), seed)
+        drawn = machine(family, seed)
         system = sym.compile(drawn.model)
         with warnings.catch_warnings(), within(SECONDS):
             warnings.simplefilter("error")
-            branch = _as_far(drawn, system, kind.endswith(DOWN))
+            branch = _as_far(drawn, system, down, tol)
     except KeyboardInterrupt:
         told = "time is up before there is a branch"
         return Row(kind, seed, "INTERRUPTED", told, seconds=SECONDS, engine=engine())
@@ -55,7 +72,7 @@ def row(kind: str, seed: int, count: int = JUDGED) -> Row:
         said = f"{type(error).__name__}: {error}"
         return Row(kind, seed, "RAISED", str(error), wrong=(said,), engine=engine())
     seconds = round(time.process_time() - begun, 2)
-    sure, ratio, wrong, unjudged = _judged(drawn, system, branch, seed, count)
+    sure, ratio, wrong, unjudged = _judged(drawn, system, branch, seed, count, tol)
     return Row(
         kind,
         seed,
@@ -71,21 +88,22 @@ def row(kind: str, seed: int, count: int = JUDGED) -> Row:
         tuple(map(str, branch.unaccounted)),
         unjudged,
         engine=engine(),
+        memory=round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6, 3),
         retraced=BACK in str(branch.stop) and _retraced(branch, [o.name for o in system.outputs]),
     )
 
 
-def _as_far(drawn: Machine, system: sym.CompiledSystem, down: bool) -> per.Branch:
+def _as_far(drawn: Machine, system: sym.CompiledSystem, down: bool, tol: float) -> per.Branch:
     """The branch from an end of the range, or what there is of it where its time is up."""
     start = drawn.bounds[int(down)]
     try:
-        return per.trace(system, drawn.parameter, drawn.bounds, start=start, tol=TOL, control=CONTROL)
+        return per.trace(system, drawn.parameter, drawn.bounds, start=start, tol=tol, control=CONTROL)
     except per.Interrupted as interrupted:
         return interrupted.branch
 
 
 def _judged(
-    drawn: Machine, system: sym.CompiledSystem, branch: per.Branch, seed: int, count: int
+    drawn: Machine, system: sym.CompiledSystem, branch: per.Branch, seed: int, count: int, tol: float
 ) -> tuple[int, float, tuple[str, ...], tuple[str, ...]]:
     """How many points are judged, the largest error over what is claimed, what is wrong, what is not."""
     if drawn.accelerations is None:
@@ -98,12 +116,12 @@ def _judged(
         point = points[int(k)]
         place = f"{drawn.parameter} {point.parameter!r} {point.label.value}".strip()
         try:
-            verdict = judged(drawn, scales, point, TOL)
+            verdict = judged(drawn, scales, point, tol)
         except ArithmeticError as error:
             unjudged.append(f"{place}: {error}")
             continue
-        sure, ratio = sure + 1, max(ratio, verdict.orbit / max(TOL, point.error.orbit))
-        said = verdict.wrong(point, TOL)
+        sure, ratio = sure + 1, max(ratio, verdict.orbit / max(tol, point.error.orbit))
+        said = verdict.wrong(point, tol)
         if said:
             wrong.append(f"{place}: {said}")
     return sure, ratio, tuple(wrong), tuple(unjudged)

@@ -13,16 +13,18 @@ import periodic as per
 import symbolic as sym
 from survey.machines.judge import Verdict, _compared, judged
 from survey.machines.page import page
-from survey.machines.rows import DOWN, SEEDS, models, row
+from survey.machines.rows import DOWN, SEEDS, models, parts, row
 from survey.rows import Row, read, write
 
 BY_HAND = [family for family in FAMILIES if machine(family, 0).accelerations is not None]
 
 
 def test_all_machines_are_drawn_once() -> None:
-    """Assert that each family has as many, from either end."""
+    """Assert that each family has as many, from either end, and a tenth of them at either other tolerance."""
     drawn = list(models())
-    assert len(set(drawn)) == len(drawn) == 2 * SEEDS * len(FAMILIES) == 440
+    assert len(set(drawn)) == len(drawn) == 2 * SEEDS * len(FAMILIES) * 12 // 10 == 528
+    for end in ("", " at 1e-3", " at 1e-9"):
+        assert drawn.count((f"rubs{DOWN}{end}", 1)) == 1 and drawn.count((f"rubs{end}", 2)) == (end == "")
     assert len(BY_HAND) == 7
 
 
@@ -75,6 +77,28 @@ def test_machine_is_traced_and_judged(tmp_path: Path) -> None:
     assert read([tmp_path / "rows"]) == {("gear pairs down", 0): found}
 
 
+@pytest.mark.parametrize(
+    ("kind", "said"),
+    [
+        ("rubs", ("rubs", False, 1e-6)),
+        ("rubs down", ("rubs", True, 1e-6)),
+        ("gear pairs at 1e-3", ("gear pairs", False, 1e-3)),
+        ("gear pairs down at 1e-9", ("gear pairs", True, 1e-9)),
+    ],
+)
+def test_kinds(kind: str, said: tuple[str, bool, float]) -> None:
+    """Assert family, end and tolerance."""
+    assert parts(kind) == said
+
+
+def test_machine_is_traced_at_another_tolerance() -> None:
+    """Assert that it is held to what it claims there."""
+    loose, tight = (row("gear pairs" + end, 0, 3) for end in (" at 1e-3", " at 1e-9"))
+    for found in (loose, tight):
+        assert (found.fate, found.judged, found.wrong) == ("to the end", 3, ())
+    assert loose.newton < tight.newton
+
+
 def test_judge_sees_a_wrong_point() -> None:
     """Assert that a point is told for what it is: right, and wrong by 1e-4 of its motion."""
     drawn = machine("gear pairs", 0)
@@ -103,14 +127,18 @@ def test_verdicts() -> None:
 
 def test_page_counts() -> None:
     """Assert what the page says of a machine traced, one that is wrong and one that ran out of time."""
-    right = Row("rubs", 0, "BOUND", "bound reached: upper end", 10, seconds=2.0, judged=8, ratio=0.5)
+    right = Row(
+        "rubs", 0, "BOUND", "bound reached: upper end", 10, seconds=2.0, judged=8, ratio=0.5, memory=0.25
+    )
     wrong = Row("rubs down", 0, "BOUND", "bound reached: lower end", 20, judged=8, wrong=("speed 1: orbit",))
     short = Row("gear pairs", 0, "INTERRUPTED", "interrupted: after 3 points", 3)
+    tight = Row("rubs at 1e-9", 0, "BOUND", "bound reached: upper end", 30, seconds=4.0, judged=1)
+    assert "| all at 1e-9 | 1 | 1 | 0 | 0 | 30 | 4.0 |  | 1 | 0 | 0 |" in page([right, tight])
     told = page([right, wrong, short])
-    assert "3 of 440 traces: 20 machines of each of 11 families" in told
+    assert "3 of 528 traces: 20 machines of each of 11 families" in told
     assert "**2 of 3 (66.7 %) are traced to the end; 1 of the 16 points judged is wrong.**" in told
-    assert "| rubs | 2 | 2 | 0 | 0 | 15 | 1.0 | 16 | 1 | 0.5 |" in told
-    assert "| gear pairs | 1 | 0 | 1 | 0 | 3 | 0.0 | 0 | 0 | 0 |" in told
+    assert "| rubs | 2 | 2 | 0 | 0 | 15 | 1.0 | 0.25 | 16 | 1 | 0.5 |" in told
+    assert "| gear pairs | 1 | 0 | 1 | 0 | 3 | 0.0 |  | 0 | 0 | 0 |" in told
     assert "| rubs down 0 | speed 1: orbit |" in told
     assert "| gear pairs 0 | interrupted: after 3 points (3 points, 0 s) |" in told
 
