@@ -13,17 +13,17 @@ from survey.rows import Row
 
 INTRODUCTION = """# Machines drawn at random
 
-{count} of {all} traces: {seeds} machines of each of {families} families, drawn from what catalogues
-and books hold, in real units (`tests/support/drawn/machines`; a seed is a machine), each through its whole
+{count} of {all} traces: {seeds} machines of each of {families} families, drawn from what catalogues and
+books hold, in real units (`tests/support/drawn/machines`; a seed is a machine), each through its whole
 range of speeds from both ends, at tol {tol:g}, a tenth of them at {others} too, in at most {seconds:g} s of
 CPU. Up to {judged} points of each, drawn at random, are judged by DOP853 and accelerations written out by
 hand (`tests/survey/machines/judge.py`): an orbit is wrong where it is off by more than ten times what it
 claims, and more than 1e-5 of its peaks to peak; multipliers, which differences know to three digits, where
 they are off by more than 1e-3 and ten times what they claim; and a stability that is not so. What seems
-wrong is looked at again, with more steps and with smaller differences, as beside a grazing; 1e-10 of a state, which
-is more than some preloaded bearings move, is the integration's own. An end is that of the range, or where
-the response grows without bound. Shafts, friction dampers and beams are traced and not judged here: the
-[random contacts](../README.md) judge such.
+wrong is looked at again, with more steps and with smaller differences, as beside a grazing; 1e-10 of a
+state, which is more than some preloaded bearings move, is the integration's own. An end is that of the
+range, or where the response grows without bound. Shafts, friction dampers and beams are traced and not
+judged here: the [random contacts](../README.md) judge such.
 `make survey-machines` runs them.
 
 Engine at {engines}.
