@@ -55,7 +55,7 @@ def test_a_branch_has_its_orbits_at_any_value(tmp_path: Path) -> None:
 
 
 def test_an_interrupted_branch_has_them_too() -> None:
-    """Assert it of the part there is, and of the branch that goes on from a file."""
+    """Assert it of the part that there is."""
     system = duffing()
 
     seen = list[float]()
