@@ -11,6 +11,9 @@ from survey.machines.rows import JUDGED, OTHERS, SECONDS, SEEDS, TOL, models, pa
 from survey.page import FATES, _engines, _told
 from survey.rows import Row
 
+NEARLY = 0.9
+"""Part of the seconds allowed that a trace has taken at least when it is cut short."""
+
 INTRODUCTION = """# Machines drawn at random
 
 {count} of {all} traces: {seeds} machines of each of {families} families, drawn from what catalogues and
@@ -60,9 +63,11 @@ def page(rows: Sequence[Row]) -> str:
 def _summary(rows: Sequence[Row]) -> str:
     judged, wrong = sum(row.judged for row in rows), sum(len(row.wrong) for row in rows)
     ends = sum(row.fate == FATES[0] for row in rows)
+    less = sum(row.reason == "INTERRUPTED" and row.seconds < NEARLY * SECONDS for row in rows)
+    more = f"{less} that ran out of time were allowed less than those traced today.\n" if less else ""
     return (
         f"**{ends} of {len(rows)} ({100 * ends / max(len(rows), 1):.1f} %) are traced to the end; "
-        f"{wrong or 'none'} of the {judged} points judged {'are' if wrong > 1 else 'is'} wrong.**\n"
+        f"{wrong or 'none'} of the {judged} points judged {'are' if wrong > 1 else 'is'} wrong.**\n{more}"
     )
 
 

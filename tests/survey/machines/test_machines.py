@@ -13,7 +13,7 @@ import periodic as per
 import symbolic as sym
 from survey.machines.judge import Verdict, _compared, judged
 from survey.machines.page import page
-from survey.machines.rows import DOWN, SEEDS, models, parts, row
+from survey.machines.rows import DOWN, SECONDS, SEEDS, models, parts, row
 from survey.rows import Row, read, write
 
 BY_HAND = [family for family in FAMILIES if machine(family, 0).accelerations is not None]
@@ -137,6 +137,8 @@ def test_page_counts() -> None:
     told = page([right, wrong, short])
     assert "3 of 528 traces: 20 machines of each of 11 families" in told
     assert "**2 of 3 (66.7 %) are traced to the end; 1 of the 16 points judged is wrong.**" in told
+    assert "\n1 that ran out of time were allowed less than those traced today.\n" in told
+    assert "allowed less" not in page([right, replace(short, seconds=SECONDS)])
     assert "| rubs | 2 | 2 | 0 | 0 | 15 | 1.0 | 0.25 | 16 | 1 | 0.5 |" in told
     assert "| gear pairs | 1 | 0 | 1 | 0 | 3 | 0.0 |  | 0 | 0 | 0 |" in told
     assert "| rubs down 0 | speed 1: orbit |" in told
