@@ -28,6 +28,7 @@ from .orbit.extrema import extrema, outputs
 from .orbit.orbit import Orbit
 from .orbit.sampling import sampled
 from .orbit.scheme import Family, Scheme
+from .proof.proof import Proof, proved
 from .results.branch import Branch
 from .results.export.export import export
 from .results.interactive.page import page
@@ -80,6 +81,7 @@ __all__ = [
     "PhaseLag",
     "Point",
     "Problem",
+    "Proof",
     "Reason",
     "ResumeError",
     "Scheme",
@@ -111,6 +113,7 @@ __all__ = [
     "plot",
     "plots",
     "points_at",
+    "proved",
     "recovered",
     "recovery",
     "sampled",

@@ -21,6 +21,7 @@ from symbolic.system.angularfrequency import AngularFrequency
 from symbolic.system.evaluated import Evaluated
 from symbolic.system.kinds import releases, surfaces
 from symbolic.system.overview import overview
+from symbolic.system.written import Written, written
 from symbolic.tables import listed
 
 CONDENSED_FROM, STATES_PER_PLACE = 40, 20
@@ -187,6 +188,11 @@ class CompiledSystem(Evaluated):
     def surfaces(self) -> tuple[Surface, ...]:
         """What happens where the switches vanish; each of them belongs to one surface."""
         return surfaces(self.expressions, self.switches, [each.name for each in self.parameters])
+
+    @cached_property
+    def written(self) -> Written:
+        """The equations as text: see `periodic.system.written`. Raises ValueError where there is none."""
+        return written(self.expressions)
 
     def flow(
         self,

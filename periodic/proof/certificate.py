@@ -1,0 +1,228 @@
+"""A certificate: an orbit known so well that boxes around it can be shown to hold it, and what is claimed of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx
+from scipy.optimize import minimize_scalar
+
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.proof import check
+from periodic.proof.check import NotProved, Problem, value
+from periodic.proof.draft import BITS, LEAST, ORDER, Piece, Place, Steps, pieces, placed, ratio, stepped
+
+ITERATIONS = 8
+"""Newton's iterations on a draft at the most; they converge quadratically."""
+
+SETTLED = 1e3
+"""Newton's iterations end where their increment is less than so many times the width of their enclosure."""
+
+KNOWN = 1e-14
+"""Increment at which they end while steps at singularities are long."""
+
+ROOM = 1024.0, 8.0, 5
+"""Boxes have so many times the width of the Newton step's enclosure at their middle; factor on that, attempts."""
+
+LEAST_BOX = 1e-30
+"""Half width of a box at the least."""
+
+MARGIN = 1e-11
+"""Part of its range by which an output's greatest value is claimed to be uncertain."""
+
+SAMPLES = 33
+"""Places in a step at which an output is looked at for its greatest value."""
+
+DISC = 4.0
+"""A multiplier is claimed to lie in a disc of so many times the width of its enclosure."""
+
+
+@dataclass
+class Draft:
+    """A certificate in the making.
+
+    Parameters
+    ----------
+    given : dict
+        The certificate, whose nodes and pieces are filled in.
+    some : sequence of Piece
+        The orbit's pieces.
+    places, steps : list
+        Nodes and steps of each.
+    """
+
+    given: dict[str, Any]
+    some: Sequence[Piece]
+    places: list[list[Place]] = field(default_factory=list)
+    steps: list[Steps] = field(default_factory=list)
+
+    @property
+    def problem(self) -> Problem:
+        """The equations that the checker makes of it."""
+        return Problem(self.given)
+
+    @property
+    def singular(self) -> bool:
+        """Whether some steps are of order 1, as at the ends of a Hertzian contact."""
+        return any(order != ORDER for steps in self.steps for node in steps for _, order in node)
+
+    def filled(self, anchors: Sequence[tuple[int, str]]) -> None:
+        """Write nodes, with boxes of no size, and steps."""
+        nodes = [y for places in self.places for _, y in places]
+        self.given["nodes"] = [{"centre": [ratio(a) for a in y], "radius": ["0/1"] * len(y)} for y in nodes]
+        self.given["pieces"] = [
+            {"sides": piece.sides, "until": piece.until, "steps": steps}
+            for piece, steps in zip(self.some, self.steps, strict=True)
+        ]
+        self.given["anchors"] = [list(anchor) for anchor in anchors]
+
+    def refined(self, anchors: Sequence[tuple[int, str]]) -> list[float]:
+        """Iterate until the nodes are as good as the steps; return the width of the last enclosure by unknown."""
+        self.filled(anchors)
+        noise = self._iterated()
+        for least in LEAST[1:] if self.singular else ():
+            self.steps = [
+                stepped(self.problem, piece.sides, places, least)
+                for piece, places in zip(self.some, self.places, strict=True)
+            ]
+            self.filled(anchors)
+            noise = self._iterated()
+        return noise
+
+    def _iterated(self) -> list[float]:
+        for _ in range(ITERATIONS):
+            orbit = check.Orbit(self.given)
+            new = orbit.newton()
+            both = [(a, b) for row, old in zip(new, orbit.centres, strict=True) for a, b in zip(row, old, strict=True)]
+            change = max(float(abs(a - b).upper()) for a, b in both)
+            noise = [max(float(row[i].rad()) for row in new) for i in range(len(new[0]))]
+            if not np.isfinite([change, *noise]).all():
+                raise NotProved("Newton's iteration fails: the orbit is at a fold, or too sensitive")
+            found = iter(new)
+            self.places = [[(s, [a.mid() for a in next(found)]) for s, _ in places] for places in self.places]
+            self.filled([(index, text) for index, text in self.given["anchors"]])
+            if change < max(SETTLED * max(noise), KNOWN * self.singular):
+                return noise
+        raise NotProved(f"Newton's iteration does not converge in {ITERATIONS} steps")
+
+    def boxed(self, noise: Sequence[float]) -> check.Orbit:
+        """Give the nodes boxes that the Newton step leads into; returns what the checker makes of them."""
+        factor, more, attempts = ROOM
+        for _ in range(attempts):
+            radius = [ratio(max(factor * width, LEAST_BOX)) for width in noise]
+            for node in self.given["nodes"]:
+                node["radius"] = radius
+            orbit = check.Orbit(self.given)
+            inside = zip(orbit.newton(), orbit.boxes, strict=True)
+            if all(b.contains_interior(a) for row, box in inside for a, b in zip(row, box, strict=True)):
+                return orbit
+            factor *= more
+        raise NotProved("no box could be shown to hold the orbit")
+
+
+def drafted(given: dict[str, Any], values: Mapping[str, float], orbit: Orbit) -> Draft:
+    """Return the draft of a certificate whose equations are given, of an orbit; unknowns have their values."""
+    ctx.prec = BITS
+    some = pieces(Problem({**given, "claim": "orbit", "pieces": [{}]}), values, orbit)
+    draft = Draft({**given, "claim": "orbit", "pieces": some}, some)
+    unknown = [values[name] for name in given["unknown"]]
+    both = [placed(draft.problem, orbit, piece, unknown) for piece in some]
+    draft.places, draft.steps = [a for a, _ in both], [b for _, b in both]
+    return draft
+
+
+def tangent(draft: Draft, sign: int) -> tuple[int, list[Array]]:
+    """Return at each node the eigenvector of the multiplier nearest to sign, and its largest component.
+
+    That component is 1 at the first node.
+    """
+    draft.filled([])
+    orbit = check.Orbit(draft.given)
+    n, m = orbit.problem.first, orbit.problem.n
+    flows = [_floats(by, n) for _, _, by, _ in orbit.flows]
+    slaved = np.eye(n)[:, :m]
+    if orbit.problem.constraint:
+        slopes = _floats(orbit.slopes(orbit.problem.constraint)[0][1], n)[0]
+        slaved[m] = -slopes[:m] / slopes[m]
+    whole = slaved
+    for flow in flows:
+        whole = flow @ whole
+    eigenvalues, vectors = np.linalg.eig(whole[:m])
+    vector = slaved @ vectors[:, np.abs(eigenvalues - sign).argmin()].real
+    largest = int(np.abs(vector).argmax())
+    found = [vector / vector[largest]]
+    for flow in flows[:-1]:
+        found.append(flow @ found[-1])
+    return largest, found
+
+
+def _floats(a: Any, n: int) -> Array:
+    """The middles of a matrix's first rows and columns, n at the most."""
+    return np.array([[float(a[i, j].mid()) for j in range(n)] for i in range(min(n, a.nrows()))])
+
+
+def extended(draft: Draft, claim: str) -> tuple[Draft, list[tuple[int, str]]]:
+    """Return the draft with the linearised equations beside it, for a fold or a doubling, and its anchor."""
+    largest, vectors = tangent(draft, 1 if claim == "fold" else -1)
+    problem, remaining = draft.problem, iter(vectors)
+    first = problem.free
+    places = [
+        [(s, [*y[:first], *map(arb, map(float, next(remaining))), *y[first:]]) for s, y in some]
+        for some in draft.places
+    ]
+    new = Draft({**draft.given, "claim": claim, "pieces": draft.some}, draft.some, places)
+    new.steps = [
+        stepped(new.problem, piece.sides, some, LEAST[0]) for piece, some in zip(new.some, places, strict=True)
+    ]
+    return new, [(first + largest, "1/1")]
+
+
+def discs(orbit: check.Orbit) -> list[list[str]]:
+    """Return discs around the multipliers, each with real and imaginary part and radius."""
+    found = []
+    for ball in orbit.multipliers():
+        if not ball.is_finite():
+            raise NotProved("the multipliers are not known")
+        radius = DISC * max(float(ball.real.rad()), float(ball.imag.rad()), 1e-30)
+        found.append([ratio(ball.real), ratio(ball.imag), ratio(radius)])
+    return found
+
+
+def extremes(orbit: check.Orbit, names: Sequence[str]) -> dict[str, list[list[str]]]:
+    """Return for each output (inner, outer) bounds of its least and of its greatest value."""
+    values = [step.polynomials() for step, *_ in orbit.steps]
+    found = {}
+    for name in names:
+        (least, low), (most, high) = (_greatest(orbit, [own[name] for own in values], sign) for sign in (-1, 1))
+        size = max(abs(least), abs(most))
+        margin = max(MARGIN * (least + most), MARGIN / 100 * size, 4 * low, 4 * high)
+        found[name] = [
+            [ratio(sign * (extreme - 4 * margin)), ratio(sign * (extreme + margin))]
+            for sign, extreme in ((-1, least), (1, most))
+        ]
+    return found
+
+
+def _greatest(orbit: check.Orbit, polynomials: Sequence[list[arb]], sign: int) -> tuple[float, float]:
+    """About the greatest value of sign times an output, and the half width of its enclosures."""
+    most, where = -np.inf, (0, 0.0, 0.0)
+    for k, p in enumerate(polynomials):
+        h = float(orbit.steps[k][0].h)
+        at = np.linspace(0.0, h, SAMPLES)
+        along = sign * np.polynomial.polynomial.polyval(at, [float(c.mid()) for c in p])
+        best = int(along.argmax())
+        if along[best] > most:
+            most, where = float(along[best]), (k, at[max(best - 1, 0)], at[min(best + 1, SAMPLES - 1)])
+    k, a, b = where
+    finer = minimize_scalar(
+        lambda t: -sign * float(value(polynomials[k], arb(t)).mid()),
+        bounds=(a, b),
+        method="bounded",
+        options={"xatol": 1e-12 * max(b - a, 1e-300)},
+    )
+    width = max(float(value(polynomials[k], arb(t)).rad()) for t in (a, b))
+    return max(most, -float(finer.fun)), width

@@ -1,0 +1,197 @@
+"""The draft of a certificate: pieces between events, nodes, and steps of lengths that can be enclosed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from flint import arb, ctx, fmpq
+
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.proof.check import NotProved, Problem, Step, nth, taylor
+from periodic.proof.samples import Event, along, events
+
+BITS = 128
+"""Precision of the ball arithmetic, in bits."""
+
+ORDER = 24
+"""Order of the Taylor series."""
+
+REMAINDER = 1e-22
+"""Remainder of a step, relative to the largest number of a state, that its length is chosen for."""
+
+SHARE = 0.7
+"""Part of the length that the series of the motion itself allows, as that of a box around it is worse."""
+
+SHORTER = Fraction(5, 8)
+"""Factor on a step that could not be enclosed."""
+
+ACCURATE = 1e-18
+"""Error of a step, relative to the state, that is accepted."""
+
+LEAST = 1e-5, 1e-8
+"""Part of a piece that a step at a singularity has: a Hertzian contact begins and ends with one of order 1.
+
+The first while orbits are known to the tolerance of a trace, the second thereafter.
+"""
+
+SHORTEST = 1e-13
+"""Part of a piece below which steps are given up."""
+
+SMALL = 1e-3
+"""Size of a scaled state below which errors are compared with it."""
+
+NEAR = 1e-3
+"""Part of a piece at its ends in which states are found from the end, not read from the orbit."""
+
+GROWTH = 100.0
+"""Growth of small differences from one node to the next at the most."""
+
+MOST_STEPS = 4000
+"""Steps of an orbit at the most."""
+
+
+def ratio(number: float | arb) -> str:
+    """A number, or the middle of a ball, as a fraction."""
+    if isinstance(number, arb):
+        mantissa, exponent = (int(k) for k in number.mid().man_exp())
+        exact = Fraction(mantissa) * Fraction(2) ** exponent
+    else:
+        exact = Fraction(float(number))
+    return f"{exact.numerator}/{exact.denominator}"
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A piece of an orbit between two places tau, the sides of all branches in it, and what ends it."""
+
+    begin: float
+    end: float
+    sides: dict[str, int]
+    until: str | None
+
+
+def pieces(problem: Problem, values: Mapping[str, float], orbit: Orbit) -> list[Piece]:
+    """Return the pieces of an orbit between its events."""
+    found: list[Event] = events(problem, values, orbit)
+    places = [0.0, *(event.phase for event in found), orbit.mesh.period]
+    names = [*(event.names[0] for event in found), None]
+    middles = np.array([(a + b) / 2 for a, b in zip(places, places[1:], strict=False)])
+    at = along(problem, values, orbit, middles)
+    return [
+        Piece(a, b, {n: 1 if at[f"?{n}"][k] > 0 else -1 for n in problem.compared}, until)
+        for k, (a, b, until) in enumerate(zip(places, places[1:], names, strict=False))
+    ]
+
+
+@dataclass
+class March:
+    """Steps through a piece, from state to state, as long as they can be enclosed with a small remainder."""
+
+    problem: Problem
+    sides: dict[str, int]
+    least: float
+    s: Fraction = Fraction(0)
+
+    def step(self, y: Sequence[arb], end: Fraction) -> tuple[list[object], Step]:
+        """Take the longest step from y, to `end` at the most; return its length and order, and the step."""
+        left = end - self.s
+        length, order = self._length(y)
+        if length < left <= 2 * self.least:
+            length, order = 1.0, 1
+        h = min(Fraction(length), left)
+        while (taken := self._taken(y, h, order)) is None:
+            h *= SHORTER
+            if h < SHORTEST:
+                raise NotProved("the motion could not be enclosed, however short the steps")
+        self.s += h
+        return [f"{h.numerator}/{h.denominator}", order], taken
+
+    def _taken(self, y: Sequence[arb], h: Fraction, order: int) -> Step | None:
+        try:
+            taken = Step(self.problem, list(y), arb(exact(self.s)), arb(exact(h)), order, self.sides)
+        except NotProved:
+            return None
+        if order == 1:
+            return taken
+        ends = taken.end()
+        small = all(float(e.rad()) <= ACCURATE * max(abs(float(e)), SMALL) for e in ends)
+        return taken if small else None
+
+    def _length(self, y: Sequence[arb]) -> tuple[float, int]:
+        try:
+            motion = taylor(self.problem, y, arb(exact(self.s)), self.sides, ORDER)
+        except NotProved:
+            return self.least, 1
+        lengths = []
+        for a in motion:
+            size = max(abs(float(nth(a, 0))), SMALL)
+            for k in (ORDER - 1, ORDER):
+                term = float(abs(nth(a, k)).mid())
+                if not np.isfinite(term):
+                    return self.least, 1
+                if term > 0:
+                    lengths.append((REMAINDER * size / term) ** (1 / k))
+        return SHARE * min(lengths, default=1.0), ORDER
+
+
+def exact(number: Fraction) -> fmpq:
+    """A fraction as python-flint has it."""
+    return fmpq(number.numerator, number.denominator)
+
+
+Place = tuple[Fraction, list[arb]]
+"""A part s of a piece, and the unknowns there."""
+
+Steps = list[list[list[object]]]
+"""By node the steps that follow it, each its length as a fraction of the piece and its order."""
+
+
+def placed(
+    problem: Problem, orbit: Orbit, piece: Piece, unknown: Sequence[float]
+) -> tuple[list[Place], Steps]:
+    """Return nodes in a piece, with the states that an orbit has there, and the steps between them."""
+    march = March(problem, piece.sides, LEAST[0])
+    places: list[Place] = []
+    steps: Steps = []
+    y: list[arb] = []
+    while march.s < 1:
+        part = float(march.s)
+        if not y or NEAR < part < 1 - NEAR:
+            tau = piece.begin + part * (piece.end - piece.begin)
+            place = np.array([tau])
+            known = [*orbit.state(place)[0], *orbit.algebraic_guess(place)[0], *unknown]
+            known += [tau, piece.end - piece.begin] * problem.events
+            y = [arb(float(a)) for a in known]
+        places.append((march.s, y))
+        y, own = _until(march, y, Fraction(1), GROWTH)
+        steps.append(own)
+    return places, steps
+
+
+def stepped(problem: Problem, sides: dict[str, int], places: Sequence[Place], least: float) -> Steps:
+    """Return the steps of a piece between given nodes."""
+    ends = [*(s for s, _ in places[1:]), Fraction(1)]
+    march = March(problem, sides, least)
+    return [_until(march, y, end, np.inf)[1] for (_, y), end in zip(places, ends, strict=True)]
+
+
+def _until(march: March, y: list[arb], end: Fraction, most: float) -> tuple[list[arb], list[list[object]]]:
+    steps: list[list[object]] = []
+    growth = 1.0
+    while march.s < end and growth < most:
+        text, taken = march.step(y, end)
+        steps.append(text)
+        y = [arb(a.mid()) for a in taken.end()]
+        growth *= _norm(taken)
+        if len(steps) > MOST_STEPS:
+            raise NotProved(f"a piece of the orbit takes more than {MOST_STEPS} steps")
+    return y, steps
+
+
+def _norm(step: Step) -> float:
+    by = step.derivative
+    return max(sum(float(abs(by[i, j]).mid()) for j in range(by.ncols())) for i in range(by.nrows()))

@@ -1,0 +1,304 @@
+"""Orbits that are proven to exist: `proved`, and what it returns."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from periodic.bifurcations.label import Label
+from periodic.checks import ByName
+from periodic.orbit.layout import layout_of
+from periodic.orbit.orbit import Orbit
+from periodic.results.point import Point
+from periodic.system import System, check_system, frequency_of
+from periodic.system.written import Writing
+
+EXTRA = "pip install 'orbitrace[proof]'"
+"""What brings ball arithmetic along."""
+
+CLAIMS = {Label.FOLD: "fold", Label.DOUBLING: "doubling"}
+"""What is claimed of points with a label."""
+
+
+@dataclass(frozen=True)
+class Disc:
+    """A disc in the complex plane that holds a Floquet multiplier.
+
+    Parameters
+    ----------
+    centre : complex
+        Its centre.
+    radius : float
+        Its radius.
+    """
+
+    centre: complex
+    radius: float
+
+
+@dataclass(frozen=True, repr=False)
+class Proof:
+    """What is proven of a periodic orbit, or why nothing is.
+
+    Parameters
+    ----------
+    reason : str
+        Why it is not decided; empty where there is a proof.
+    says : str
+        The theorem, in a sentence.
+    certificate : dict
+        What `periodic/proof/check.py` checks without any other file.
+    radius : float
+        Largest half width of the boxes that hold the orbit at the nodes, scaled as its states are.
+    distance : float
+        The most by which the orbit that was given differs from the proven one at the nodes, scaled.
+    multipliers : tuple of Disc
+        Discs that hold the Floquet multipliers; none for folds and doublings.
+    stable : bool, optional
+        Whether all of them lie within the unit circle, that of a free oscillation left out; None where it is not
+        decided.
+    minimum, maximum : dict
+        Bounds of the least and of the greatest value of each output (SI), by name.
+    parameter : tuple of float, optional
+        Bounds of the parameter at a fold or doubling, of the frequency of a free oscillation.
+    """
+
+    reason: str = ""
+    says: str = ""
+    certificate: dict[str, Any] = field(default_factory=dict)
+    radius: float = np.inf
+    distance: float = np.inf
+    multipliers: tuple[Disc, ...] = ()
+    stable: bool | None = None
+    minimum: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    maximum: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    parameter: tuple[float, float] | None = None
+
+    def __bool__(self) -> bool:
+        return not self.reason
+
+    def __repr__(self) -> str:
+        return f"Proof({self.says})" if self else f"Proof(not decided: {self.reason})"
+
+    def peak_to_peak(self, output: str) -> tuple[float, float]:
+        """Return bounds of an output's peak to peak (SI).
+
+        Parameters
+        ----------
+        output : str
+            Its name.
+
+        Returns
+        -------
+        tuple of float
+            Lower and upper bound.
+
+        Raises
+        ------
+        ValueError
+            For a name that is none.
+        """
+        least, most = ByName("output", dict(self.minimum))[output], self.maximum[output]
+        return float(np.nextafter(most[0] - least[1], -np.inf)), float(np.nextafter(most[1] - least[0], np.inf))
+
+    def save(self, path: str | Path) -> None:
+        """Write the certificate, which `python check.py certificate.json` checks.
+
+        Parameters
+        ----------
+        path : str or Path
+            Where it is written, as JSON.
+
+        Raises
+        ------
+        ValueError
+            Where there is no proof.
+        """
+        if not self:
+            raise ValueError(f"there is no certificate: {self.reason}")
+        Path(path).write_text(json.dumps(self.certificate, indent=1), "utf-8")
+
+
+def proved(system: System, what: Orbit | Point, parameter: str | None = None) -> Proof:
+    """Prove that there is a periodic orbit where one was computed, how far from it, and whether it is stable.
+
+    An interval Newton step on multiple shooting, in ball arithmetic, with flows by Taylor series whose remainders
+    are bounded: see `periodic/proof/check.py`, which checks the certificate that is returned and imports nothing
+    of this package. Kinks of the equations (gaps, stops, backlash, Hertzian contacts) are crossed at their
+    events; that no other event happens is part of the proof. Takes seconds to minutes.
+
+    Parameters
+    ----------
+    system : System
+        A compiled system whose unknowns are its states alone, without impacts.
+    what : Orbit or Point
+        The orbit, at the parameters that it has.
+    parameter : str, optional
+        The branch's parameter, for a point LP or PD: it is then proven that there is a fold or a period doubling,
+        and between which values.
+
+    Returns
+    -------
+    Proof
+        True where there is a proof; else its `reason` says what could not be shown. Nothing is ever "proven"
+        wrongly, much cannot be: stiff systems, grazing orbits.
+
+    Raises
+    ------
+    ImportError
+        Without python-flint: ``pip install 'orbitrace[proof]'``.
+    ValueError
+        For what is no orbit of the system, an equilibrium, and where a point is none with a proof.
+    """
+    check_system(system)
+    claim, orbit = _asked(what, parameter)
+    orbit = orbit.expressed_in(layout_of(system))
+    try:
+        from periodic.proof import check
+    except ImportError as error:
+        raise ImportError(f"proofs need python-flint; {EXTRA}") from error
+    try:
+        given, values = _equations(system, orbit, claim, parameter)
+    except ValueError as error:
+        return Proof(str(error))
+    try:
+        return _proved(system, orbit, claim, given, values)
+    except (check.NotProved, ArithmeticError) as error:
+        return Proof(str(error) or type(error).__name__)
+
+
+def _asked(what: Orbit | Point, parameter: str | None) -> tuple[str, Orbit]:
+    if not isinstance(what, Orbit | Point):
+        raise ValueError(f"what is a {type(what).__name__}; it must be an Orbit or a Point")
+    orbit = what.orbit if isinstance(what, Point) else what
+    if orbit.equilibrium:
+        raise ValueError("what is an equilibrium; it must be a periodic orbit")
+    if parameter is None:
+        return "orbit", orbit
+    claim = CLAIMS.get(what.label) if isinstance(what, Point) else None
+    if claim is None:
+        raise ValueError("parameter is given; what must then be a point LP or PD of its branch")
+    return claim, orbit
+
+
+def _equations(
+    system: System, orbit: Orbit, claim: str, parameter: str | None
+) -> tuple[dict[str, Any], dict[str, float]]:
+    """What a certificate begins with, and the values of all names. Raises ValueError where there is no text."""
+    if not hasattr(system, "written"):
+        raise ValueError("the system does not write its equations as text")
+    text = cast(Writing, system).written
+    named = {system.parameters[i].name: p for p, i in text.values.items()}
+    values = {p: float(orbit.parameter[i]) for p, i in text.values.items()}
+    free = not any("t" in line.replace("(", " ").replace(")", " ").replace(",", " ").split() for line in text.lines)
+    unknown = []
+    if free:
+        names = frequency_of(system)
+        if len(names) != 1 or claim != "orbit":
+            raise ValueError("folds and doublings of free oscillations are not proven, their orbits are")
+        unknown = [named[names[0]]]
+    if parameter is not None:
+        if parameter not in named:
+            raise ValueError(f"the equations do not depend on {parameter!r}")
+        unknown.append(named[parameter])
+    if claim != "orbit" and any(word in line for line in text.lines for word in ("less(", "sign(")):
+        raise ValueError("folds and doublings of systems whose equations jump are not proven")
+    names = {"states": [each.name for each in (*system.states, *system.algebraics)], "values": {p: name for name, p in named.items()}}
+    given: dict[str, Any] = {
+        "format": "orbitrace proof 1",
+        "names": names,
+        "equations": {
+            "lines": list(text.lines),
+            "rates": list(text.rates),
+            "values": {p: repr(value) for p, value in values.items() if p not in unknown},
+        },
+        "turns": str(orbit.periods),
+        "unknown": unknown,
+    }
+    if text.constraint is not None:
+        given["equations"]["constraint"] = text.constraint
+    return given, values
+
+
+def _proved(
+    system: System, orbit: Orbit, claim: str, given: dict[str, Any], values: dict[str, float]
+) -> Proof:
+    from periodic.proof import certificate as made
+    from periodic.proof import check
+    from periodic.proof.draft import BITS
+
+    draft = made.drafted({**given, "bits": BITS}, values, orbit)
+    anchors: list[tuple[int, str]] = []
+    if claim == "orbit" and given["unknown"]:
+        anchors.append((0, made.ratio(draft.places[0][0][1][0])))
+    elif claim != "orbit":
+        draft, anchors = made.extended(draft, claim)
+    if draft.problem.events:
+        anchors.append((draft.problem.size - 2, "0/1"))
+    first = [y for places in draft.places for _, y in places]
+    found = draft.boxed(draft.refined(anchors))
+    n = found.problem.n
+    apart = [abs(a - b) for old, new in zip(first, found.boxes, strict=True) for a, b in zip(old[:n], new, strict=False)]
+    outputs = {
+        variable.name: operand
+        for variable, operand in zip(system.outputs, cast(Writing, system).written.outputs, strict=True)
+        if operand[0] in "xv"
+    }
+    claims: dict[str, Any] = {"outputs": made.extremes(found, list(outputs.values()))}
+    stable = None
+    if claim == "orbit":
+        claims["multipliers"] = made.discs(found)
+        stable = claims["stable"] = found.stable()
+    unknown = [_outward(ball) for ball in found.boxes[0][found.problem.first : found.problem.free]]
+    proof = Proof(
+        radius=max(float(box.rad()) for node in found.boxes for box in node[:n]),
+        distance=max(float(each.upper()) for each in apart),
+        multipliers=tuple(
+            Disc(complex(_float(re), _float(im)), _float(radius))
+            for re, im, radius in claims.get("multipliers", ())
+        ),
+        stable=stable,
+        minimum={name: _bounds(claims["outputs"][line][0]) for name, line in outputs.items()},
+        maximum={name: _bounds(claims["outputs"][line][1]) for name, line in outputs.items()},
+        parameter=unknown[-1] if unknown else None,
+    )
+    says = _said(proof, claim, given)
+    own = {**draft.given, "claims": claims, "says": says}
+    own["digest"] = check.digest(own)
+    found.given = own
+    found.verify()
+    return replace(proof, says=says, certificate=own)
+
+
+def _outward(ball: Any) -> tuple[float, float]:
+    low, high = float(ball.lower()), float(ball.upper())
+    return float(np.nextafter(low, -np.inf)), float(np.nextafter(high, np.inf))
+
+
+def _float(text: str) -> float:
+    return float(Fraction(text))
+
+
+def _bounds(both: list[str]) -> tuple[float, float]:
+    low, high = sorted(map(_float, both))
+    return float(np.nextafter(low, -np.inf)), float(np.nextafter(high, np.inf))
+
+
+def _said(proof: Proof, claim: str, given: dict[str, Any]) -> str:
+    """The theorem."""
+    kinds = {True: ", stable", False: ", unstable", None: ""}
+    if claim == "orbit":
+        return (
+            f"in the boxes, of half width {proof.radius:.1e} at the most, there is one periodic orbit, and one "
+            f"only{kinds[proof.stable]}"
+        )
+    assert proof.parameter is not None
+    name, (low, high) = given["names"]["values"][given["unknown"][-1]], proof.parameter
+    what = {"fold": "fold", "doubling": "period doubling"}[claim]
+    return f"there is a {what} with {name} from {low!r} to {high!r}"
