@@ -34,6 +34,9 @@ LEAST_BOX = 1e-30
 MARGIN = 1e-11
 """Part of its range by which an output's greatest value is claimed to be uncertain."""
 
+WIDER = 16.0, 8
+"""Factor on the margin of a greatest value that could not be shown, and attempts."""
+
 SAMPLES = 33
 """Places in a step at which an output is looked at for its greatest value."""
 
@@ -195,24 +198,24 @@ def discs(orbit: check.Orbit) -> list[list[str]]:
 def extremes(orbit: check.Orbit, names: Sequence[str]) -> dict[str, list[list[str]]]:
     """Return for each output (inner, outer) bounds of its least and of its greatest value."""
     values = [step.polynomials() for step, *_ in orbit.steps]
+    lengths = [step.h for step, *_ in orbit.steps]
     found = {}
     for name in names:
-        (least, low), (most, high) = (_greatest(orbit, [own[name] for own in values], sign) for sign in (-1, 1))
-        size = max(abs(least), abs(most))
-        margin = max(MARGIN * (least + most), MARGIN / 100 * size, 4 * low, 4 * high)
+        polynomials = [own[name] for own in values]
+        about = [_greatest(polynomials, lengths, sign) for sign in (-1, 1)]
+        margin = MARGIN * max(sum(about), max(map(abs, about)) / 100)
         found[name] = [
-            [ratio(sign * (extreme - 4 * margin)), ratio(sign * (extreme + margin))]
-            for sign, extreme in ((-1, least), (1, most))
+            [ratio(sign * end) for end in _shown(polynomials, lengths, sign, most, margin)]
+            for sign, most in zip((-1, 1), about, strict=True)
         ]
     return found
 
 
-def _greatest(orbit: check.Orbit, polynomials: Sequence[list[arb]], sign: int) -> tuple[float, float]:
-    """About the greatest value of sign times an output, and the half width of its enclosures."""
+def _greatest(polynomials: Sequence[list[arb]], lengths: Sequence[arb], sign: int) -> float:
+    """About the greatest value of sign times an output."""
     most, where = -np.inf, (0, 0.0, 0.0)
-    for k, p in enumerate(polynomials):
-        h = float(orbit.steps[k][0].h)
-        at = np.linspace(0.0, h, SAMPLES)
+    for k, (p, length) in enumerate(zip(polynomials, lengths, strict=True)):
+        at = np.linspace(0.0, float(length), SAMPLES)
         along = sign * np.polynomial.polynomial.polyval(at, [float(c.mid()) for c in p])
         best = int(along.argmax())
         if along[best] > most:
@@ -224,5 +227,23 @@ def _greatest(orbit: check.Orbit, polynomials: Sequence[list[arb]], sign: int) -
         method="bounded",
         options={"xatol": 1e-12 * max(b - a, 1e-300)},
     )
-    width = max(float(value(polynomials[k], arb(t)).rad()) for t in (a, b))
-    return max(most, -float(finer.fun)), width
+    return max(most, -float(finer.fun))
+
+
+def _shown(
+    polynomials: Sequence[list[arb]], lengths: Sequence[arb], sign: int, most: float, margin: float
+) -> tuple[float, float]:
+    """A value that sign times an output exceeds somewhere, and one that it exceeds nowhere."""
+    wider, attempts = WIDER
+    for _ in range(attempts):
+        bound = most + margin
+        try:
+            found = [
+                float(check.greatest([sign * c for c in p], arb(0), h, arb(bound)))
+                for p, h in zip(polynomials, lengths, strict=True)
+            ]
+        except NotProved:
+            margin *= wider
+            continue
+        return max(found) - margin, bound
+    raise NotProved("the extremes of an output are not known")

@@ -232,14 +232,18 @@ class Step:
         return [value([*(nth(a, k) for k in range(self.order)), nth(b, self.order)], self.h) for a, b in both]
 
     def polynomials(self):
-        """By name of every value its coefficients along the motions, the last one for the remainder."""
+        """By name of every value its coefficients along the motions, the last one for the smallest remainder."""
         found = []
         for motion, s, count in (self.motion, self.s, self.order), (self.later, self.during, self.order + 1):
             ctx.cap = count
             at = self.problem.at([cut(a, count) for a in motion], arb_series([s, 1]), self.sides)
             found.append({name: split(a, 3)[0] for name, a in at.items()})
-        first, rest = found
-        return {n: [*(nth(a, k) for k in range(self.order)), nth(rest[n], self.order)] for n, a in first.items()}
+        return {name: self._shortened(a, found[1][name]) for name, a in found[0].items()}
+
+    def _shortened(self, a, rest):
+        sizes = [nth(rest, 0).rad(), *(abs(nth(rest, k)).upper() * self.h**k for k in range(1, self.order + 1))]
+        best = min(range(self.order + 1), key=lambda k: float(sizes[k]) if sizes[k].is_finite() else float("inf"))
+        return [*(nth(a, k) for k in range(best)), nth(rest, best)]
 
 def keeps(p, sign, begin, h, first, last, depth=0):
     """Show sign p > 0 between begin and h, where p may vanish at begin (first) or at h (last)."""
@@ -247,7 +251,7 @@ def keeps(p, sign, begin, h, first, last, depth=0):
     rises = sign * value(slope(p), at)
     if sign * value(p, at) > 0 or (first and rises > 0) or (last and rises < 0):
         return
-    show(depth < DEPTH, "an event may have been missed")
+    show(depth < DEPTH and sign * value(p, middle) > 0, "an event may have been missed")
     keeps(p, sign, begin, middle, first, False, depth + 1)
     keeps(p, sign, middle, h, False, last, depth + 1)
 
@@ -259,7 +263,7 @@ def greatest(p, begin, h, bound, depth=0):
         some = [value(p, begin), centre, value(p, h)]
         show(all(a < bound for a in some), "an output may be beyond what is claimed")
         return max(a.lower() for a in some)
-    show(depth < DEPTH, "an output may be beyond what is claimed")
+    show(depth < DEPTH and centre < bound, "an output may be beyond what is claimed")
     return max(greatest(p, begin, middle, bound, depth + 1), greatest(p, middle, h, bound, depth + 1))
 
 def upright(a):

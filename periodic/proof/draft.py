@@ -32,11 +32,17 @@ SHORTER = Fraction(5, 8)
 ACCURATE = 1e-18
 """Error of a step, relative to the state, that is accepted."""
 
+ACCURATE_SLOPES = 1e-12
+"""The same of the derivatives in what a step begins with."""
+
 LEAST = 1e-5, 1e-8
 """Part of a piece that a step at a singularity has: a Hertzian contact begins and ends with one of order 1.
 
 The first while orbits are known to the tolerance of a trace, the second thereafter.
 """
+
+APART = 1e-10
+"""Part of the period by which two events are apart at least."""
 
 SHORTEST = 1e-13
 """Part of a piece below which steps are given up."""
@@ -77,6 +83,9 @@ class Piece:
 def pieces(problem: Problem, values: Mapping[str, float], orbit: Orbit) -> list[Piece]:
     """Return the pieces of an orbit between its events."""
     found: list[Event] = events(problem, values, orbit)
+    for one, other in zip(found, found[1:], strict=False):
+        if other.phase - one.phase < APART * orbit.mesh.period:
+            raise NotProved(f"two events meet: comparisons {one.names[0]} and {other.names[0]} change at once")
     places = [0.0, *(event.phase for event in found), orbit.mesh.period]
     names = [*(event.names[0] for event in found), None]
     middles = np.array([(a + b) / 2 for a, b in zip(places, places[1:], strict=False)])
@@ -100,7 +109,7 @@ class March:
         """Take the longest step from y, to `end` at the most; return its length and order, and the step."""
         left = end - self.s
         length, order = self._length(y)
-        if length < left <= 2 * self.least:
+        if self.s and end == 1 and left <= 2 * self.least:  # only singularities at its end make steps so short
             length, order = 1.0, 1
         h = min(Fraction(length), left)
         while (taken := self._taken(y, h, order)) is None:
@@ -119,7 +128,11 @@ class March:
             return taken
         ends = taken.end()
         small = all(float(e.rad()) <= ACCURATE * max(abs(float(e)), SMALL) for e in ends)
-        return taken if small else None
+        by = taken.derivative
+        known = all(
+            float(by[i, j].rad()) <= ACCURATE_SLOPES for i in range(by.nrows()) for j in range(by.ncols())
+        )
+        return taken if small and known else None
 
     def _length(self, y: Sequence[arb]) -> tuple[float, int]:
         try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -17,10 +18,13 @@ from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import Orbit
 from periodic.results.point import Point
 from periodic.system import System, check_system, frequency_of
-from periodic.system.written import Writing
+from periodic.system.written import Writing, WrittenLike
 
 EXTRA = "pip install 'orbitrace[proof]'"
 """What brings ball arithmetic along."""
+
+COMPARISONS = ("max", "min", "abs", "sign", "less")
+"""Functions of the text that pass from one branch to another."""
 
 CLAIMS = {Label.FOLD: "fold", Label.DOUBLING: "doubling"}
 """What is claimed of points with a label."""
@@ -173,6 +177,26 @@ def proved(system: System, what: Orbit | Point, parameter: str | None = None) ->
         return Proof(str(error) or type(error).__name__)
 
 
+def needed(text: WrittenLike) -> tuple[list[str], list[str]]:
+    """Return the lines that a text's rates need, and the outputs that need no comparison besides these."""
+    words = {line.split(" = ")[0]: re.findall(r"\w+", line.split(" = ")[1]) for line in text.lines}
+
+    def behind(names: list[str]) -> set[str]:
+        found, left = set(), [name for name in names if name in words]
+        while left:
+            name = left.pop()
+            if name not in found:
+                found.add(name)
+                left += [word for word in words[name] if word in words]
+        return found
+
+    core = behind([*text.rates, *filter(None, [text.constraint])])
+    compared = {name for name, (first, *_) in words.items() if first in COMPARISONS}
+    outputs = [name for name in text.outputs if name[0] in "xv" and not (behind([name]) - core) & compared]
+    kept = core | behind(outputs)
+    return [line for line in text.lines if line.split(" = ")[0] in kept], outputs
+
+
 def _asked(what: Orbit | Point, parameter: str | None) -> tuple[str, Orbit]:
     if not isinstance(what, Orbit | Point):
         raise ValueError(f"what is a {type(what).__name__}; it must be an Orbit or a Point")
@@ -194,9 +218,10 @@ def _equations(
     if not hasattr(system, "written"):
         raise ValueError("the system does not write its equations as text")
     text = cast(Writing, system).written
+    lines, outputs = needed(text)
     named = {system.parameters[i].name: p for p, i in text.values.items()}
     values = {p: float(orbit.parameter[i]) for p, i in text.values.items()}
-    free = not any("t" in line.replace("(", " ").replace(")", " ").replace(",", " ").split() for line in text.lines)
+    free = not any("t" in line.replace("(", " ").replace(")", " ").replace(",", " ").split() for line in lines)
     unknown = []
     if free:
         names = frequency_of(system)
@@ -207,14 +232,18 @@ def _equations(
         if parameter not in named:
             raise ValueError(f"the equations do not depend on {parameter!r}")
         unknown.append(named[parameter])
-    if claim != "orbit" and any(word in line for line in text.lines for word in ("less(", "sign(")):
+    if claim != "orbit" and any(word in line for line in lines for word in ("less(", "sign(")):
         raise ValueError("folds and doublings of systems whose equations jump are not proven")
-    names = {"states": [each.name for each in (*system.states, *system.algebraics)], "values": {p: name for name, p in named.items()}}
+    names = {
+        "states": [each.name for each in (*system.states, *system.algebraics)],
+        "values": {p: name for name, p in named.items()},
+        "outputs": {v.name: line for v, line in zip(system.outputs, text.outputs, strict=True) if line in outputs},
+    }
     given: dict[str, Any] = {
         "format": "orbitrace proof 1",
         "names": names,
         "equations": {
-            "lines": list(text.lines),
+            "lines": lines,
             "rates": list(text.rates),
             "values": {p: repr(value) for p, value in values.items() if p not in unknown},
         },
@@ -245,11 +274,7 @@ def _proved(
     found = draft.boxed(draft.refined(anchors))
     n = found.problem.n
     apart = [abs(a - b) for old, new in zip(first, found.boxes, strict=True) for a, b in zip(old[:n], new, strict=False)]
-    outputs = {
-        variable.name: operand
-        for variable, operand in zip(system.outputs, cast(Writing, system).written.outputs, strict=True)
-        if operand[0] in "xv"
-    }
+    outputs = given["names"]["outputs"]
     claims: dict[str, Any] = {"outputs": made.extremes(found, list(outputs.values()))}
     stable = None
     if claim == "orbit":

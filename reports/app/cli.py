@@ -20,6 +20,7 @@ from .linear.command import linear
 from .map.command import map_
 from .options import BAD_INPUT, DONE, say
 from .parts.command import new, parts
+from .prove.command import prove
 from .scenes import scenes
 from .trace.command import trace
 
@@ -29,7 +30,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (scenes, trace, linear, export, parts, new, doctor):
+for command in (scenes, trace, linear, prove, export, parts, new, doctor):
     app.command()(command)
 app.command("map")(map_)
 

@@ -1,0 +1,307 @@
+"""Orbits, folds and doublings that are proven, against the engine, known numbers and an independent integrator."""
+
+from __future__ import annotations
+
+import copy
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve
+from support.kept import kept
+
+import periodic as per
+import symbolic as sym
+
+pytest.importorskip("flint")
+
+from periodic.proof import check  # noqa: E402 - needs python-flint
+
+
+@kept
+def duffing() -> per.Branch:
+    """The branch of the scene, over its folds."""
+    return per.trace(sym.scene("duffing"), "Omega", (0.3, 3.0), at=[2.0])
+
+
+@kept
+def gear() -> per.Branch:
+    """Gear pair that loses contact, over its folds, at which the teeth part."""
+    return per.trace(sym.scene("gear-pair"), "Omega", (0.55, 1.4), start=1.4)
+
+
+@kept
+def stop() -> per.Proof:
+    """Oscillator before an elastic stop that it strikes."""
+    system = sym.scene("stop")
+    (first, *_) = per.trace(system, "Omega", (0.8, 1.6), at=[1.1]).at(Omega=1.1)
+    return per.proved(system, first)
+
+
+def agrees(proof: per.Proof, point: per.Point) -> None:
+    """Assert that a computed point is where its proof says, within what it claims."""
+    assert proof, proof.reason
+    assert proof.radius < 1e-9
+    assert proof.distance <= 10 * max(point.error.orbit, 1e-12)
+    for disc in proof.multipliers:
+        assert np.abs(point.multipliers - disc.centre).min() <= disc.radius + 1e-6
+    assert proof.stable in (None, point.stable)
+    for name in point.maximum:
+        low, high = proof.peak_to_peak(name)
+        assert low <= high
+        assert point.peak_to_peak(name) == pytest.approx((low + high) / 2, rel=1e-6)
+
+
+def test_duffing_on_three_sheets() -> None:
+    """Assert that three orbits at one frequency are proven, the middle one unstable."""
+    points = duffing().at(Omega=2.0)
+    proofs = [per.proved(sym.scene("duffing"), point) for point in points]
+    assert [proof.stable for proof in proofs] == [True, False, True]
+    for proof, point in zip(proofs, points, strict=True):
+        agrees(proof, point)
+
+
+def test_an_orbit_agrees_with_dop853() -> None:
+    """Assert that DOP853 from the proven initial state closes to its own tolerance."""
+    system = sym.scene("duffing")
+    point = duffing().at(Omega=2.0)[0]
+    proof = per.proved(system, point)
+    centre = [float(check.arb(check.ratio(c))) for c in proof.certificate["nodes"][0]["centre"]]
+
+    def rates(tau: float, x: np.ndarray) -> np.ndarray:
+        """x' = f, by the compiled residual R = x' - f up to a factor."""
+        zero, state = np.zeros((1, 2)), x[None]
+        at = (state, np.zeros((1, 0)), np.array([tau]), point.orbit.parameter)
+        rows = system.linearise(zero, *at)
+        return np.linalg.solve(rows.d_rate[0], -rows.residual[0])
+
+    end = solve_ivp(rates, (0, 2 * np.pi), centre, method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+    assert end == pytest.approx(centre, abs=1e-11)
+
+
+def test_folds_of_duffing() -> None:
+    """Assert that both folds are proven, to 14 digits, where the engine has them to 9."""
+    folds = duffing().labelled(per.Label.FOLD)
+    for point in folds:
+        proof = per.proved(sym.scene("duffing"), point, "Omega")
+        assert proof, proof.reason
+        low, high = proof.parameter or (0.0, 0.0)
+        assert high - low < 1e-14
+        assert point.parameter == pytest.approx(low, rel=1e-9)
+        assert re.fullmatch(r"there is a fold with Omega from [\d.]+ to [\d.]+", proof.says)
+
+
+def test_folds_of_a_gear_pair_that_loses_contact() -> None:
+    """Assert that both folds are proven across the events at which teeth part and meet."""
+    folds = gear().labelled(per.Label.FOLD)
+    assert len(folds) == 2
+    for point in folds:
+        proof = per.proved(sym.scene("gear-pair"), point, "Omega")
+        assert proof, proof.reason
+        assert len(proof.certificate["pieces"]) == 3
+        assert point.parameter == pytest.approx((proof.parameter or (0.0,))[0], rel=1e-9)
+
+
+def test_doubling() -> None:
+    """Assert that the doubling of a parametric oscillator's rest, forced a little, is proven where it is found."""
+    system = sym.compile(
+        sym.Equations(
+            lambda x, p, wave: {"x": x.v, "v": -0.1 * x.v - (1 + 0.9 * wave.cos) * x.x - x.x**3 + 0.2 * wave.sin},
+            states={"x": 0.0, "v": 0.0},
+            parameters={"Omega": 2.4},
+            frequency="Omega",
+        )
+    )
+    found = per.trace(system, "Omega", (1.4, 3.0), start=3.0).labelled(per.Label.DOUBLING)
+    assert found
+    proof = per.proved(system, found[0], "Omega")
+    assert proof, proof.reason
+    assert found[0].parameter == pytest.approx((proof.parameter or (0.0,))[0], rel=1e-8)
+
+
+def test_a_contact_lost() -> None:
+    """Assert that the gear pair's orbits are proven on both sides of its loss of contact, with their events."""
+    for value, counts in ((1.3, {1}), (0.7, {1, 3})):
+        found = set()
+        for point in gear().at(Omega=value):
+            proof = per.proved(sym.scene("gear-pair"), point)
+            agrees(proof, point)
+            found.add(len(proof.certificate["pieces"]))
+        assert found == counts
+
+
+def test_a_hertzian_contact_lost() -> None:
+    """Assert that the dry disc of 1990 is proven as it leaves the ground, where d^2F/dx^2 has no bound."""
+    system = sym.scene("dry-810N")
+    branch = per.trace(system, "speed", (15.0, 50.0))
+    lost = [point for point in branch if 20 < point.parameter < 25 and point.minimum["deflection"] <= 0]
+    point = lost[len(lost) // 2]
+    proof = per.proved(system, point)
+    agrees(proof, point)
+    assert len(proof.certificate["pieces"]) == 3
+
+
+def test_the_disc_of_1990() -> None:
+    """Assert that its orbit in oil, whose film force is an unknown of the equations, is proven."""
+    system = sym.scene("vitrea79-810N")
+    point = per.trace(system, "speed", (52.0, 54.0))[0]
+    proof = per.proved(system, point)
+    agrees(proof, point)
+    assert proof.certificate["equations"]["constraint"]
+
+
+def roessler(t: float, y: np.ndarray) -> list[float]:
+    """The rates of his equations."""
+    return [-y[1] - y[2], y[0] + 0.2 * y[1], 0.2 + y[2] * (y[0] - 5.7)]
+
+
+def test_roessler() -> None:
+    """Assert the simple cycle of Rössler's equations, period 5.8810884555, unstable, from a crude sample of it."""
+    system = sym.compile(
+        sym.Equations(
+            lambda x, p: {"x": -x.y - x.z, "y": x.x + 0.2 * x.y, "z": 0.2 + x.z * (x.x - 5.7)},
+            states={"x": 0.0, "y": 0.0, "z": 0.0},
+            parameters={},
+        )
+    )
+
+    def missed(u: np.ndarray) -> np.ndarray:
+        """How far a motion from the section y = 0 is from it after a time."""
+        end = solve_ivp(roessler, (0, u[2]), [u[0], 0.0, u[1]], rtol=1e-9, atol=1e-10).y[:, -1]
+        return end - [u[0], 0.0, u[1]]
+
+    x, z, period = fsolve(missed, [-8.39, 0.03, 5.88])
+    phase = np.linspace(0, 2 * np.pi, 401)
+    times = phase * period / (2 * np.pi)
+    state = solve_ivp(roessler, (0, period), [x, 0.0, z], t_eval=times, rtol=1e-9, atol=1e-10).y.T
+    state[-1] = state[0]
+    parameter = {"omega": 2 * np.pi / period}
+    orbit = per.sampled(phase, state, np.zeros((len(phase), 0)), parameter, system=system)
+    proof = per.proved(system, orbit)
+    assert proof, proof.reason
+    assert 2 * np.pi / (proof.parameter or (0.0,))[0] == pytest.approx(5.8810884555, abs=1e-10)
+    assert proof.stable is False
+    assert min(abs(disc.centre + 2.4039535318) for disc in proof.multipliers) < 1e-9
+
+
+def test_not_decided_beside_a_grazing() -> None:
+    """Assert that an orbit that hardly touches is not proven, with a reason."""
+    system = sym.scene("stop")
+    (point, *_) = per.trace(system, "Omega", (0.8, 1.6)).labelled(per.Label.GRAZING)
+    proof = per.proved(system, point)
+    assert not proof
+    assert proof.reason
+    assert proof.stable is None
+
+
+def test_not_decided_for_want_of_text() -> None:
+    """Assert the reasons of systems whose equations have no text, and that they have no certificate."""
+    system = sym.scene("impact-oscillator")
+    proof = per.proved(system, per.trace(system, "Omega", (0.9, 0.95))[0])
+    assert proof.reason == "the system has impacts; they are not written as text"
+    with pytest.raises(ValueError, match="there is no certificate: the system has impacts"):
+        proof.save("nowhere.json")
+
+
+@pytest.mark.parametrize(
+    ("what", "parameter", "sentence"),
+    [
+        ("orbit", None, "what is a str; it must be an Orbit or a Point"),
+        ("point", "Omega", "parameter is given; what must then be a point LP or PD of its branch"),
+    ],
+)
+def test_refused(what: str, parameter: str | None, sentence: str) -> None:
+    """Assert what is said of bad input."""
+    given: Any = duffing()[0] if what == "point" else "orbit"
+    with pytest.raises(ValueError, match=re.escape(sentence)):
+        per.proved(sym.scene("duffing"), given, parameter)
+
+
+def checked(path: Path) -> tuple[int, str]:
+    """What a stranger sees who runs the checker, in an isolated interpreter."""
+    run = subprocess.run(
+        [sys.executable, "-I", check.__file__, str(path)], capture_output=True, text=True, check=False
+    )
+    return run.returncode, run.stdout + run.stderr
+
+
+def test_a_stranger_checks(tmp_path: Path) -> None:
+    """Assert that the checker, alone, accepts a certificate and refuses it with a letter changed."""
+    path = tmp_path / "proof.json"
+    stop().save(path)
+    assert checked(path) == (0, f"proved: {stop().says}\n")
+    path.write_text(path.read_text("utf-8").replace("stable", "unstable"), "utf-8")
+    assert checked(path) == (1, "refused: the certificate was changed\n")
+    path.write_text("{}", "utf-8")
+    code, said = checked(path)
+    assert code == 1 and said.startswith("refused: ") and "Traceback" not in said
+
+
+def places(given: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """Where the numbers, texts and lists of a certificate are."""
+    items = given.items() if isinstance(given, dict) else enumerate(given) if isinstance(given, list) else ()
+    return [at, *(place for key, each in items for place in places(each, (*at, key)))]
+
+
+def falsified(given: dict[str, Any], rng: np.random.Generator) -> dict[str, Any]:
+    """A certificate that claims what is not so, or proves nothing, with a digest of its own."""
+    new = copy.deepcopy(given)
+    way = rng.integers(9)
+    if way == 0:  # other equations
+        values = new["equations"]["values"]
+        name = rng.choice([n for n, v in values.items() if float(v) != 0])
+        values[name] = repr(float(values[name]) * (1 + 10.0 ** -rng.integers(1, 8)))
+    elif way == 1:
+        lines = new["equations"]["lines"]
+        k = int(rng.choice([k for k, line in enumerate(lines) if " * " in line or " - " in line]))
+        lines[k] = lines[k].replace(" * ", " + ") if " * " in lines[k] else lines[k].replace(" - ", " + ")
+    elif way == 2:  # another place
+        node = new["nodes"][rng.integers(len(new["nodes"]))]
+        i = int(rng.integers(2))
+        centre, radius = (check.ratio(node[key][i]) for key in ("centre", "radius"))
+        node["centre"][i] = str(centre + int(rng.integers(4, 1000)) * int(rng.choice([-1, 1])) * radius)
+    elif way == 3:  # a multiplier elsewhere
+        disc = new["claims"]["multipliers"][rng.integers(len(new["claims"]["multipliers"]))]
+        disc[rng.integers(2)] = str(check.ratio(disc[0]) + int(rng.integers(2, 1000)) * check.ratio(disc[2]))
+    elif way == 4:  # an output that goes further than is said, or not so far
+        both = new["claims"]["outputs"][rng.choice(list(new["claims"]["outputs"]))]
+        side = int(rng.integers(2))
+        inner, outer = map(check.ratio, both[side])
+        wide = outer - inner
+        both[side] = [str(inner - wide), str(inner)] if rng.integers(2) else [str(outer), str(outer + wide)]
+    elif way == 5:
+        new["claims"]["stable"] = not new["claims"]["stable"]
+    elif way == 6:  # events that are not
+        piece = new["pieces"][rng.integers(len(new["pieces"]))]
+        piece["sides"] = {name: -side for name, side in piece["sides"].items()}
+    elif way == 7:  # not the whole period
+        steps = new["pieces"][rng.integers(len(new["pieces"]))]["steps"]
+        steps[rng.integers(len(steps))].pop()
+    else:
+        new["turns"] = str(int(new["turns"]) + int(rng.integers(1, 5)))
+    new["digest"] = check.digest(new)
+    return new
+
+
+def test_200_mutated_certificates_are_refused(tmp_path: Path) -> None:
+    """Assert that changes are noticed: any one by the digest, and false claims also with a digest of their own."""
+    given, rng, path = stop().certificate, np.random.default_rng(28), tmp_path / "proof.json"
+    where = [place for place in places(given) if place and place != ("digest",)]
+    for _ in range(100):
+        new = copy.deepcopy(given)
+        *way, last = where[rng.integers(len(where))]
+        inside = new
+        for key in way:
+            inside = inside[key]
+        inside[last] = "0/1" if inside[last] != "0/1" else "1/1"
+        path.write_text(json.dumps(new), "utf-8")
+        assert check.main(str(path)) == 1
+    for _ in range(100):
+        path.write_text(json.dumps(falsified(given, rng)), "utf-8")
+        assert check.main(str(path)) == 1
