@@ -89,6 +89,13 @@ def test_contact(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert said["in_contact"].maximum["q"] > 1
 
 
+def test_proof(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that both proofs stand, and that the certificate is written."""
+    said = run("explanation/proof.md", tmp_path, monkeypatch)
+    assert said["proof"] and said["fold"] and (tmp_path / "proof.json").is_file()
+    assert said["fold"].parameter == pytest.approx((0.598153117286,) * 2, rel=1e-11)
+
+
 def test_fitting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that the truth is within three standard errors, and that the damping is known less well."""
     said = run("tutorials/fitting.md", tmp_path, monkeypatch)

@@ -1,4 +1,4 @@
-"""A certificate: an orbit known so well that boxes around it can be shown to hold it, and what is claimed of it."""
+"""A certificate: an orbit known so well that boxes can be shown to hold it, and what is claimed of it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scipy.optimize import minimize_scalar
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.proof import check
-from periodic.proof.check import NotProved, Problem, value
+from periodic.proof.check import NotProvedError, Problem, value
 from periodic.proof.draft import BITS, LEAST, ORDER, Piece, Place, Steps, pieces, placed, ratio, stepped
 
 ITERATIONS = 8
@@ -26,7 +26,7 @@ KNOWN = 1e-14
 """Increment at which they end while steps at singularities are long."""
 
 ROOM = 1024.0, 8.0, 5
-"""Boxes have so many times the width of the Newton step's enclosure at their middle; factor on that, attempts."""
+"""Width of boxes over that of the Newton step's enclosure at their middle; factor on that, attempts."""
 
 LEAST_BOX = 1e-30
 """Half width of a box at the least."""
@@ -84,7 +84,7 @@ class Draft:
         self.given["anchors"] = [list(anchor) for anchor in anchors]
 
     def refined(self, anchors: Sequence[tuple[int, str]]) -> list[float]:
-        """Iterate until the nodes are as good as the steps; return the width of the last enclosure by unknown."""
+        """Iterate until the nodes are as good as the steps; return the last enclosure's width by unknown."""
         self.filled(anchors)
         noise = self._iterated()
         for least in LEAST[1:] if self.singular else ():
@@ -100,17 +100,21 @@ class Draft:
         for _ in range(ITERATIONS):
             orbit = check.Orbit(self.given)
             new = orbit.newton()
-            both = [(a, b) for row, old in zip(new, orbit.centres, strict=True) for a, b in zip(row, old, strict=True)]
+            both = [
+                (a, b)
+                for row, old in zip(new, orbit.centres, strict=True)
+                for a, b in zip(row, old, strict=True)
+            ]
             change = max(float(abs(a - b).upper()) for a, b in both)
             noise = [max(float(row[i].rad()) for row in new) for i in range(len(new[0]))]
             if not np.isfinite([change, *noise]).all():
-                raise NotProved("Newton's iteration fails: the orbit is at a fold, or too sensitive")
+                raise NotProvedError("Newton's iteration fails: the orbit is at a fold, or too sensitive")
             found = iter(new)
             self.places = [[(s, [a.mid() for a in next(found)]) for s, _ in places] for places in self.places]
             self.filled([(index, text) for index, text in self.given["anchors"]])
             if change < max(SETTLED * max(noise), KNOWN * self.singular):
                 return noise
-        raise NotProved(f"Newton's iteration does not converge in {ITERATIONS} steps")
+        raise NotProvedError(f"Newton's iteration does not converge in {ITERATIONS} steps")
 
     def boxed(self, noise: Sequence[float]) -> check.Orbit:
         """Give the nodes boxes that the Newton step leads into; returns what the checker makes of them."""
@@ -124,11 +128,11 @@ class Draft:
             if all(b.contains_interior(a) for row, box in inside for a, b in zip(row, box, strict=True)):
                 return orbit
             factor *= more
-        raise NotProved("no box could be shown to hold the orbit")
+        raise NotProvedError("no box could be shown to hold the orbit")
 
 
 def drafted(given: dict[str, Any], values: Mapping[str, float], orbit: Orbit) -> Draft:
-    """Return the draft of a certificate whose equations are given, of an orbit; unknowns have their values."""
+    """Return the draft of a certificate of an orbit, with equations and values of all names given."""
     ctx.prec = BITS
     some = pieces(Problem({**given, "claim": "orbit", "pieces": [{}]}), values, orbit)
     draft = Draft({**given, "claim": "orbit", "pieces": some}, some)
@@ -179,17 +183,18 @@ def extended(draft: Draft, claim: str) -> tuple[Draft, list[tuple[int, str]]]:
     ]
     new = Draft({**draft.given, "claim": claim, "pieces": draft.some}, draft.some, places)
     new.steps = [
-        stepped(new.problem, piece.sides, some, LEAST[0]) for piece, some in zip(new.some, places, strict=True)
+        stepped(new.problem, piece.sides, some, LEAST[0])
+        for piece, some in zip(new.some, places, strict=True)
     ]
     return new, [(first + largest, "1/1")]
 
 
 def discs(orbit: check.Orbit) -> list[list[str]]:
     """Return discs around the multipliers, each with real and imaginary part and radius."""
-    found = []
+    found: list[list[str]] = []
     for ball in orbit.multipliers():
         if not ball.is_finite():
-            raise NotProved("the multipliers are not known")
+            raise NotProvedError("the multipliers are not known")
         radius = DISC * max(float(ball.real.rad()), float(ball.imag.rad()), 1e-30)
         found.append([ratio(ball.real), ratio(ball.imag), ratio(radius)])
     return found
@@ -242,8 +247,8 @@ def _shown(
                 float(check.greatest([sign * c for c in p], arb(0), h, arb(bound)))
                 for p, h in zip(polynomials, lengths, strict=True)
             ]
-        except NotProved:
+        except NotProvedError:
             margin *= wider
             continue
         return max(found) - margin, bound
-    raise NotProved("the extremes of an output are not known")
+    raise NotProvedError("the extremes of an output are not known")

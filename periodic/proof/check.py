@@ -20,12 +20,12 @@ from flint import acb, acb_mat, arb, arb_mat, arb_series, ctx, fmpq
 
 DEPTH, TRIES = 40, 6  # halvings of a step to find a sign, attempts to enclose a motion; no truth hangs on them
 
-class NotProved(Exception):
+class NotProvedError(Exception):
     """What could not be shown."""
 
 def show(truth, what):
     if not truth:
-        raise NotProved(what)
+        raise NotProvedError(what)
 
 def ratio(text):
     return fmpq(*map(int, text.split("/")))
@@ -223,7 +223,7 @@ class Step:
             if all(b.contains_interior(a + t) for b, a, t in zip(box, known, tail)):
                 return later
             room = [2 * abs(t).upper() + r for t, r in zip(tail, room)]
-        raise NotProved("the motion could not be enclosed during a step")
+        raise NotProvedError("the motion could not be enclosed during a step")
 
     def end(self, y=None):
         """Where motions are at its end: all of them, or that from a point y among them."""
@@ -286,6 +286,7 @@ class Orbit:
         ctx.prec = given["bits"]
         self.given, self.problem = given, Problem(given)
         self.centres = [[arb(ratio(c)) for c in node["centre"]] for node in given["nodes"]]
+        show(all(ratio(r) >= 0 for node in given["nodes"] for r in node["radius"]), "a box has no size")
         radii = [[arb(0, arb(ratio(r)).upper()) for r in node["radius"]] for node in given["nodes"]]
         self.boxes = [[c + r for c, r in zip(*each)] for each in zip(self.centres, radii)]
         self.flows, self.steps, edge = [], [], None
@@ -415,6 +416,16 @@ class Orbit:
         inside = all(abs(ball) < 1 for ball in balls)
         return inside or (False if any(abs(ball) > 1 for ball in balls) else None)
 
+    def says(self):
+        """What is proven, in a sentence; unknown values have the names that the certificate gives them."""
+        names, first, box = self.given["names"]["values"], self.problem.first, self.boxes[0]
+        known = [f"{names[u]} = {c.str(25)}" for u, c in zip(self.problem.unknown, box[first:])]
+        kind = {True: ", stable", False: ", unstable"}.get(self.given["claims"].get("stable"), "")
+        half = max(float(b.rad()) for node in self.boxes for b in node[: self.problem.n])
+        what = {"orbit": "periodic orbit", "fold": "fold", "doubling": "period doubling"}[self.given["claim"]]
+        what = f"in boxes of half width {half:.1e} at the most there is one {what}, and one only"
+        return "".join([what, kind, *(f", {each}" for each in known)])
+
 def digest(given):
     rest = {name: each for name, each in given.items() if name != "digest"}
     return hashlib.sha256(json.dumps(rest, sort_keys=True).encode()).hexdigest()
@@ -424,11 +435,12 @@ def main(path):
         with open(path, encoding="utf-8") as file:
             given = json.load(file)
         show(given["digest"] == digest(given), "the certificate was changed")
-        Orbit(given).verify()
-    except (NotProved, ArithmeticError, LookupError, TypeError, ValueError, OSError) as error:
+        orbit = Orbit(given)
+        orbit.verify()
+    except (NotProvedError, ArithmeticError, LookupError, TypeError, ValueError, OSError) as error:
         print(f"refused: {error}")
         return 1
-    print(f"proved: {given['says']}")
+    print(f"proved: {orbit.says()}")
     return 0
 
 if __name__ == "__main__":

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from flint import arb, ctx, fmpq
+from flint import arb, fmpq
 
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.scheme import Array
-from periodic.proof.check import NotProved, Problem, Step, nth, taylor
+from periodic.proof.check import NotProvedError, Problem, Step, nth, taylor
 from periodic.proof.samples import Event, along, events
 
 BITS = 128
@@ -85,7 +84,9 @@ def pieces(problem: Problem, values: Mapping[str, float], orbit: Orbit) -> list[
     found: list[Event] = events(problem, values, orbit)
     for one, other in zip(found, found[1:], strict=False):
         if other.phase - one.phase < APART * orbit.mesh.period:
-            raise NotProved(f"two events meet: comparisons {one.names[0]} and {other.names[0]} change at once")
+            raise NotProvedError(
+                f"two events meet: comparisons {one.names[0]} and {other.names[0]} change at once"
+            )
     places = [0.0, *(event.phase for event in found), orbit.mesh.period]
     names = [*(event.names[0] for event in found), None]
     middles = np.array([(a + b) / 2 for a, b in zip(places, places[1:], strict=False)])
@@ -109,20 +110,22 @@ class March:
         """Take the longest step from y, to `end` at the most; return its length and order, and the step."""
         left = end - self.s
         length, order = self._length(y)
-        if self.s and end == 1 and left <= 2 * self.least:  # only singularities at its end make steps so short
+        if (
+            self.s and end == 1 and left <= 2 * self.least
+        ):  # only singularities at its end make steps so short
             length, order = 1.0, 1
         h = min(Fraction(length), left)
         while (taken := self._taken(y, h, order)) is None:
             h *= SHORTER
             if h < SHORTEST:
-                raise NotProved("the motion could not be enclosed, however short the steps")
+                raise NotProvedError("the motion could not be enclosed, however short the steps")
         self.s += h
         return [f"{h.numerator}/{h.denominator}", order], taken
 
     def _taken(self, y: Sequence[arb], h: Fraction, order: int) -> Step | None:
         try:
             taken = Step(self.problem, list(y), arb(exact(self.s)), arb(exact(h)), order, self.sides)
-        except NotProved:
+        except NotProvedError:
             return None
         if order == 1:
             return taken
@@ -137,7 +140,7 @@ class March:
     def _length(self, y: Sequence[arb]) -> tuple[float, int]:
         try:
             motion = taylor(self.problem, y, arb(exact(self.s)), self.sides, ORDER)
-        except NotProved:
+        except NotProvedError:
             return self.least, 1
         lengths = []
         for a in motion:
@@ -201,7 +204,7 @@ def _until(march: March, y: list[arb], end: Fraction, most: float) -> tuple[list
         y = [arb(a.mid()) for a in taken.end()]
         growth *= _norm(taken)
         if len(steps) > MOST_STEPS:
-            raise NotProved(f"a piece of the orbit takes more than {MOST_STEPS} steps")
+            raise NotProvedError(f"a piece of the orbit takes more than {MOST_STEPS} steps")
     return y, steps
 
 

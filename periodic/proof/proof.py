@@ -13,7 +13,6 @@ from typing import Any, cast
 import numpy as np
 
 from periodic.bifurcations.label import Label
-from periodic.checks import ByName
 from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import Orbit
 from periodic.results.point import Point
@@ -65,8 +64,8 @@ class Proof:
     multipliers : tuple of Disc
         Discs that hold the Floquet multipliers; none for folds and doublings.
     stable : bool, optional
-        Whether all of them lie within the unit circle, that of a free oscillation left out; None where it is not
-        decided.
+        Whether all of them lie within the unit circle, that of a free oscillation left out; None where it is
+        not decided.
     minimum, maximum : dict
         Bounds of the least and of the greatest value of each output (SI), by name.
     parameter : tuple of float, optional
@@ -106,10 +105,17 @@ class Proof:
         Raises
         ------
         ValueError
-            For a name that is none.
+            For a name without bounds: an output is left out where it has comparisons that the equations of
+            motion do not have.
         """
-        least, most = ByName("output", dict(self.minimum))[output], self.maximum[output]
-        return float(np.nextafter(most[0] - least[1], -np.inf)), float(np.nextafter(most[1] - least[0], np.inf))
+        if output not in self.minimum:
+            raise ValueError(
+                f"output is {output!r}; it must be one that has bounds, {', '.join(self.minimum)}"
+            )
+        least, most = self.minimum[output], self.maximum[output]
+        return float(np.nextafter(most[0] - least[1], -np.inf)), float(
+            np.nextafter(most[1] - least[0], np.inf)
+        )
 
     def save(self, path: str | Path) -> None:
         """Write the certificate, which `python check.py certificate.json` checks.
@@ -132,20 +138,20 @@ class Proof:
 def proved(system: System, what: Orbit | Point, parameter: str | None = None) -> Proof:
     """Prove that there is a periodic orbit where one was computed, how far from it, and whether it is stable.
 
-    An interval Newton step on multiple shooting, in ball arithmetic, with flows by Taylor series whose remainders
-    are bounded: see `periodic/proof/check.py`, which checks the certificate that is returned and imports nothing
-    of this package. Kinks of the equations (gaps, stops, backlash, Hertzian contacts) are crossed at their
-    events; that no other event happens is part of the proof. Takes seconds to minutes.
+    An interval Newton step on multiple shooting, in ball arithmetic, with flows by Taylor series whose
+    remainders are bounded: see `periodic/proof/check.py`, which checks the certificate that is returned and
+    imports nothing of this package. Kinks of the equations (gaps, stops, backlash, Hertzian contacts) are
+    crossed at their events; that no other event happens is part of the proof. Takes seconds to minutes.
 
     Parameters
     ----------
     system : System
-        A compiled system whose unknowns are its states alone, without impacts.
+        A compiled system with one unknown beside its states at the most, without impacts.
     what : Orbit or Point
         The orbit, at the parameters that it has.
     parameter : str, optional
-        The branch's parameter, for a point LP or PD: it is then proven that there is a fold or a period doubling,
-        and between which values.
+        The branch's parameter, for a point LP or PD: it is then proven that there is a fold or a period
+        doubling, and between which values.
 
     Returns
     -------
@@ -173,7 +179,7 @@ def proved(system: System, what: Orbit | Point, parameter: str | None = None) ->
         return Proof(str(error))
     try:
         return _proved(system, orbit, claim, given, values)
-    except (check.NotProved, ArithmeticError) as error:
+    except (check.NotProvedError, ArithmeticError) as error:
         return Proof(str(error) or type(error).__name__)
 
 
@@ -214,20 +220,22 @@ def _asked(what: Orbit | Point, parameter: str | None) -> tuple[str, Orbit]:
 def _equations(
     system: System, orbit: Orbit, claim: str, parameter: str | None
 ) -> tuple[dict[str, Any], dict[str, float]]:
-    """What a certificate begins with, and the values of all names. Raises ValueError where there is no text."""
+    """What a certificate begins with, and the values of all names. Raises ValueError without a text."""
     if not hasattr(system, "written"):
         raise ValueError("the system does not write its equations as text")
     text = cast(Writing, system).written
     lines, outputs = needed(text)
     named = {system.parameters[i].name: p for p, i in text.values.items()}
     values = {p: float(orbit.parameter[i]) for p, i in text.values.items()}
-    free = not any("t" in line.replace("(", " ").replace(")", " ").replace(",", " ").split() for line in lines)
+    free = not any(
+        "t" in line.replace("(", " ").replace(")", " ").replace(",", " ").split() for line in lines
+    )
     unknown = []
     if free:
-        names = frequency_of(system)
-        if len(names) != 1 or claim != "orbit":
+        frequency = frequency_of(system)
+        if len(frequency) != 1 or claim != "orbit":
             raise ValueError("folds and doublings of free oscillations are not proven, their orbits are")
-        unknown = [named[names[0]]]
+        unknown = [named[frequency[0]]]
     if parameter is not None:
         if parameter not in named:
             raise ValueError(f"the equations do not depend on {parameter!r}")
@@ -236,8 +244,11 @@ def _equations(
         raise ValueError("folds and doublings of systems whose equations jump are not proven")
     names = {
         "states": [each.name for each in (*system.states, *system.algebraics)],
+        "scales": [each.scale for each in (*system.states, *system.algebraics)],
         "values": {p: name for name, p in named.items()},
-        "outputs": {v.name: line for v, line in zip(system.outputs, text.outputs, strict=True) if line in outputs},
+        "outputs": {
+            v.name: line for v, line in zip(system.outputs, text.outputs, strict=True) if line in outputs
+        },
     }
     given: dict[str, Any] = {
         "format": "orbitrace proof 1",
@@ -260,12 +271,12 @@ def _proved(
 ) -> Proof:
     from periodic.proof import certificate as made
     from periodic.proof import check
-    from periodic.proof.draft import BITS
+    from periodic.proof.draft import BITS, ratio
 
     draft = made.drafted({**given, "bits": BITS}, values, orbit)
     anchors: list[tuple[int, str]] = []
     if claim == "orbit" and given["unknown"]:
-        anchors.append((0, made.ratio(draft.places[0][0][1][0])))
+        anchors.append((0, ratio(draft.places[0][0][1][0])))
     elif claim != "orbit":
         draft, anchors = made.extended(draft, claim)
     if draft.problem.events:
@@ -273,7 +284,11 @@ def _proved(
     first = [y for places in draft.places for _, y in places]
     found = draft.boxed(draft.refined(anchors))
     n = found.problem.n
-    apart = [abs(a - b) for old, new in zip(first, found.boxes, strict=True) for a, b in zip(old[:n], new, strict=False)]
+    apart = [
+        abs(a - b)
+        for old, new in zip(first, found.boxes, strict=True)
+        for a, b in zip(old[:n], new, strict=False)
+    ]
     outputs = given["names"]["outputs"]
     claims: dict[str, Any] = {"outputs": made.extremes(found, list(outputs.values()))}
     stable = None
@@ -293,12 +308,11 @@ def _proved(
         maximum={name: _bounds(claims["outputs"][line][1]) for name, line in outputs.items()},
         parameter=unknown[-1] if unknown else None,
     )
-    says = _said(proof, claim, given)
-    own = {**draft.given, "claims": claims, "says": says}
+    own = {**draft.given, "claims": claims}
     own["digest"] = check.digest(own)
     found.given = own
     found.verify()
-    return replace(proof, says=says, certificate=own)
+    return replace(proof, says=_said(proof, claim, given), certificate=own)
 
 
 def _outward(ball: Any) -> tuple[float, float]:
@@ -318,12 +332,11 @@ def _bounds(both: list[str]) -> tuple[float, float]:
 def _said(proof: Proof, claim: str, given: dict[str, Any]) -> str:
     """The theorem."""
     kinds = {True: ", stable", False: ", unstable", None: ""}
-    if claim == "orbit":
+    if proof.parameter is None or claim == "orbit":
         return (
-            f"in the boxes, of half width {proof.radius:.1e} at the most, there is one periodic orbit, and one "
+            f"in boxes of half width {proof.radius:.1e} at the most there is one periodic orbit, and one "
             f"only{kinds[proof.stable]}"
         )
-    assert proof.parameter is not None
     name, (low, high) = given["names"]["values"][given["unknown"][-1]], proof.parameter
     what = {"fold": "fold", "doubling": "period doubling"}[claim]
     return f"there is a {what} with {name} from {low!r} to {high!r}"

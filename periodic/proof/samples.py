@@ -13,7 +13,7 @@ from periodic.orbit.scheme import Array
 from periodic.proof.check import SLOPES, Problem
 
 PER_INTERVAL = 16
-"""Samples in each interval of the mesh, between which a switching function is looked at for a change of sign."""
+"""Samples in each interval of the mesh, between which comparisons are looked at for a change of sign."""
 
 OPERATIONS: dict[str, Callable[..., Array]] = {
     "+": np.add,
@@ -39,7 +39,7 @@ OPERATIONS: dict[str, Callable[..., Array]] = {
 
 @dataclass(frozen=True)
 class Event:
-    """A place tau where arguments of branches vanish: their names, all of which compare the same two values."""
+    """A place tau where two values are equal that comparisons, with these names, compare."""
 
     phase: float
     names: tuple[str, ...]

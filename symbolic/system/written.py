@@ -2,7 +2,7 @@
 
     v3 = v1 * x0,    v4 = cos(t),    v5 = max(v3, v4),    v6 = v5 ^ p2
 
-x0.. are the scaled states, t is tau, p0.. are the parameters in SI. A line for a comparison is 1 where it holds.
+x0.. are the scaled states, t is tau, p0.. are the parameters in SI. less(a, b) is 1 where a < b, else 0.
 """
 
 from __future__ import annotations
@@ -46,7 +46,13 @@ COMPOSED: dict[int, Callable[..., list[tuple[str, ...]]]] = {
     ca.OP_TAN: lambda a: [("sin", a), ("cos", a), ("{0}", "/", "{1}")],
     ca.OP_LOG1P: lambda a: [("1", "+", a), ("log", "{0}")],
     ca.OP_EXPM1: lambda a: [("exp", a), ("{0}", "-", "1")],
-    ca.OP_TANH: lambda a: [("2", "*", a), ("exp", "{0}"), ("{1}", "+", "1"), ("2", "/", "{2}"), ("1", "-", "{3}")],
+    ca.OP_TANH: lambda a: [
+        ("2", "*", a),
+        ("exp", "{0}"),
+        ("{1}", "+", "1"),
+        ("2", "/", "{2}"),
+        ("1", "-", "{3}"),
+    ],
     ca.OP_COSH: lambda a: [("exp", a), ("inv", "{0}"), ("{0}", "+", "{1}"), ("{2}", "*", "0.5")],
     ca.OP_SINH: lambda a: [("exp", a), ("inv", "{0}"), ("{0}", "-", "{1}"), ("{2}", "*", "0.5")],
     ca.OP_ASIN: lambda a: [(a, "*", a), ("1", "-", "{0}"), ("sqrt", "{1}"), (a, "/", "{2}"), ("atan", "{3}")],
@@ -65,7 +71,7 @@ class Written:
     rates, outputs : tuple of str
         The names of the lines with dx/dtau, and with the outputs in SI.
     constraint : str, optional
-        The name of the line that vanishes, where the system has an unknown: the last of x0.., after the states.
+        The name of the line that vanishes, where the system has an unknown: the last of x0..
     values : dict of str to int
         Names p0.. of the parameters that occur, with their indices.
     """
@@ -93,11 +99,13 @@ def written(e: Expressions) -> Written:
     Raises
     ------
     ValueError
-        For a system with several unknowns, or impacts, one that is condensed, one whose rows are not linear in the
-        rates, and for operations that the text does not have.
+        For a system with several unknowns, impacts, sliders or relays, one that is condensed, one whose rows
+        are not linear in the rates, and for operations that the text does not have.
     """
     if (m := e.algebraic.numel()) > 1:
-        raise ValueError(f"the system has {m} unknowns beside its states; with more than one it is not written as text")
+        raise ValueError(
+            f"the system has {m} unknowns beside its states; with more than one it is not written as text"
+        )
     if e.resets:
         raise ValueError("the system has impacts; they are not written as text")
     if e.sliders or e.relays:
@@ -108,7 +116,11 @@ def written(e: Expressions) -> Written:
     names = [[f"x{i}" for i in range(n + m)], ["t"], [f"p{i}" for i in range(e.parameter.numel())]]
     found = _Lines(ca.Function("text", [x, e.phase, e.parameter], [rates, outputs, constraint]), names)
     both = found.results
-    used = {word for line in (*found.lines, *both[0], *both[1]) for word in line.replace(")", "").replace("(", " ").replace(",", "").split()}
+    used = {
+        word
+        for line in (*found.lines, *both[0], *both[1])
+        for word in line.replace(")", "").replace("(", " ").replace(",", "").split()
+    }
     values = {name: i for i, name in enumerate(names[2]) if name in used}
     return Written(tuple(found.lines), tuple(both[0]), tuple(both[1]), both[2][0] if m else None, values)
 
@@ -121,7 +133,9 @@ def _explicit(e: Expressions, n: int) -> tuple[ca.SX, ca.SX]:
         raise ValueError("the system's linear part is condensed; it is not written as text")
     constraints = constraint_rows(e)
     if len(constraints) != 1:
-        raise ValueError("the system's unknown is not determined by a row without rates; it is not written as text")
+        raise ValueError(
+            "the system's unknown is not determined by a row without rates; it is not written as text"
+        )
     rows = ca.vertcat(*(e.residual[i] for i in range(n + 1) if i not in constraints))
     slope = ca.jacobian(rows, e.rate)
     if ca.depends_on(slope, e.rate):
@@ -161,7 +175,9 @@ class _Lines:
         if operation in INFIX:
             return self._line(of[0], INFIX[operation], of[1])
         if operation not in COMPOSED:
-            raise ValueError(f"the equations have an operation ({_name(operation)}) that the text does not have")
+            raise ValueError(
+                f"the equations have an operation ({_name(operation)}) that the text does not have"
+            )
         before: list[str] = []
         for terms in COMPOSED[operation](*of):
             before.append(self._line(*(term.format(*before) for term in terms)))

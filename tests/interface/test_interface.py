@@ -18,12 +18,12 @@ from interface.text import PACKAGES, interface
 CHANGED = {
     "symbolic": {
         *("Assembly", "Excitation", "State", "Unknown", "Motion", "Place", "Workbench", "Follower"),
-        *("Counted", "ChosenKernel", "Junction", "_Reduced", "Sketch"),
+        *("Counted", "ChosenKernel", "Junction", "_Reduced", "Sketch", "_Lines"),
     },
     "periodic": {
         *("_Pieces", "NativeSteps", "Motion", "_Oscillating", "_Border", "_Pair", "_Grazing", "_Peak"),
         *("Work", "_Known", "Execution", "Run", "Continuation", "ReturnMap", "Transient", "Start"),
-        *("Foresight", "_Way", "_Ranges"),
+        *("Foresight", "_Way", "_Ranges", "March", "Draft"),
     },
 }
 """The dataclasses that change as they are used: those of all others are values."""

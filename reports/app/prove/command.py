@@ -30,7 +30,9 @@ if TYPE_CHECKING:
 At = Annotated[
     str | None,
     typer.Option(
-        "--at", metavar="VALUE,VALUE,...", help="Where orbits are proven, on every sheet, in the unit of the axis."
+        "--at",
+        metavar="VALUE,VALUE,...",
+        help="Where orbits are proven, on every sheet, in the unit of the axis.",
     ),
 ]
 Folds = Annotated[

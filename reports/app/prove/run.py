@@ -56,7 +56,9 @@ def proven(task: Task, folder: Path, *, folds: bool) -> list[Proven]:
     if branch.stop.reason is per.Reason.INTERRUPTED:
         raise KeyboardInterrupt
     asked = [value * view.unit for value in task.at]
-    chosen = [(point, None) for point in branch if any(abs(point.parameter - v) <= 1e-12 * abs(v) for v in asked)]
+    chosen = [
+        (point, None) for point in branch if any(abs(point.parameter - v) <= 1e-12 * abs(v) for v in asked)
+    ]
     special = [point for point in branch if point.label in (per.Label.FOLD, per.Label.DOUBLING)] * folds
     both = [*chosen, *((point, view.parameter) for point in special)]
     found = []
