@@ -55,8 +55,11 @@ NEAR = 1e-3
 GROWTH = 100.0
 """Growth of small differences from one node to the next at the most."""
 
-MOST_STEPS = 4000
-"""Steps of an orbit at the most."""
+MOST_STEPS = 2000
+"""Steps of a piece at the most."""
+
+FORESEEN, GROWING = 12, 1.5
+"""Steps over which their length must have grown by that factor, where too many of that length are left."""
 
 
 def ratio(number: float | arb) -> str:
@@ -198,13 +201,21 @@ def stepped(problem: Problem, sides: dict[str, int], places: Sequence[Place], le
 def _until(march: March, y: list[arb], end: Fraction, most: float) -> tuple[list[arb], list[list[object]]]:
     steps: list[list[object]] = []
     growth = 1.0
+    lengths: list[float] = []
     while march.s < end and growth < most:
+        before = march.s
         text, taken = march.step(y, end)
         steps.append(text)
+        lengths.append(float(march.s - before))
+        left = float(end - march.s) / lengths[-1]
+        grown = len(lengths) <= FORESEEN or lengths[-1] > GROWING * lengths[-1 - FORESEEN]
+        if len(lengths) > MOST_STEPS or (left > MOST_STEPS and not grown):
+            raise NotProvedError(
+                f"a piece of the orbit would take some {len(lengths) + left:.0f} steps, of {MOST_STEPS} at the "
+                f"most: its fastest motions are too fast for it"
+            )
         y = [arb(a.mid()) for a in taken.end()]
         growth *= _norm(taken)
-        if len(steps) > MOST_STEPS:
-            raise NotProvedError(f"a piece of the orbit takes more than {MOST_STEPS} steps")
     return y, steps
 
 

@@ -60,7 +60,8 @@ class Proof:
     radius : float
         Largest half width of the boxes that hold the orbit at the nodes, scaled as its states are.
     distance : float
-        The most by which the orbit that was given differs from the proven one at the nodes, scaled.
+        The most by which the orbit that was given differs from the proven one at the nodes, over the largest
+        peak to peak of its scaled states, as its error estimate is.
     multipliers : tuple of Disc
         Discs that hold the Floquet multipliers; none for folds and doublings.
     stable : bool, optional
@@ -298,7 +299,7 @@ def _proved(
     unknown = [_outward(ball) for ball in found.boxes[0][found.problem.first : found.problem.free]]
     proof = Proof(
         radius=max(float(box.rad()) for node in found.boxes for box in node[:n]),
-        distance=max(float(each.upper()) for each in apart),
+        distance=max(float(each.upper()) for each in apart) / orbit.span(),
         multipliers=tuple(
             Disc(complex(_float(re), _float(im)), _float(radius))
             for re, im, radius in claims.get("multipliers", ())

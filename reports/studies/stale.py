@@ -13,10 +13,11 @@ from reports.studies.pages.content import Kept
 from reports.studies.pages.engine import ROOT, commit_of, commits_since, current, sources
 from reports.studies.pages.page import KEPT, Page
 from reports.studies.paper.page import REPORT as PAPER
+from reports.studies.proof.page import REPORT as PROOF
 from reports.studies.structures.page import REPORT as STRUCTURES
 from reports.studies.trade.page import REPORT as TRADE
 
-REPORTS = (PAPER, TRADE, EXTREMES, MACHINES, STRUCTURES)
+REPORTS = (PAPER, TRADE, EXTREMES, MACHINES, STRUCTURES, PROOF)
 
 TEXTS = ("tests/survey", "tests/mutants")
 """Folders of pages that name the commit of their engine in the text, for all that is on them."""

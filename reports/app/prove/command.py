@@ -97,6 +97,6 @@ def _show(task: Task, found: list[Proven], files: list[Path]) -> None:
     view = view_of(task.scene)
     rows = [[each.label, f"{view.shown(each.value):.10g}", each.verdict, each.size] for each in found]
     tell(task.scene.title)
-    console.table(["label", view.abscissa.heading, "verdict", "within"], rows, left="verdict")
+    console.table(["label", view.abscissa.heading, "verdict", "off by"], rows, left="verdict")
     tell(*(f"{each.label or 'orbit'} at {view.shown(each.value):.10g}: {each.says}" for each in found))
     tell_written(files)

@@ -40,7 +40,7 @@ class Proven:
 
     @property
     def size(self) -> str:
-        """How far the computed orbit is from the proven one, in scaled states."""
+        """How far the computed orbit is from the proven one, over its size."""
         return f"{self.proof.distance:.1e}" if self.proof else ""
 
 

@@ -1,0 +1,83 @@
+"""Orbits proven one by one, each with its certificate checked by an interpreter of its own."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import periodic as per
+from periodic.proof import check
+from reports.studies.pages.content import Found, Tell
+from symbolic import CompiledSystem
+
+Asked = tuple[per.Point, str | None]
+"""A point, and of a fold or doubling the parameter of its branch."""
+
+
+def proven(system: CompiledSystem, asked: Iterable[Asked], tell: Tell) -> Found:
+    """Return the rows of a section: what is proven of some points, and how far the engine was from it."""
+    rows = []
+    for point, parameter in asked:
+        tell(f"at {point.parameter:.6g}")
+        rows.append(row(system, point, parameter))
+    return Found(numbers={"proven": sum(each["proven"] for each in rows)}, rows=rows)
+
+
+def row(system: CompiledSystem, point: per.Point, parameter: str | None) -> dict[str, Any]:
+    """Prove a point, check the certificate, and return what came of it."""
+    begun = time.process_time()
+    proof = per.proved(system, point, parameter)
+    seconds = time.process_time() - begun
+    bounds = {name: proof.peak_to_peak(name) for name in list(proof.minimum)[:1]}
+    accepted, checked = _checked(proof) if proof else (False, 0.0)
+    return {
+        "label": point.label.value if parameter else "",
+        "place": point.parameter,
+        "proven": bool(proof),
+        "says": proof.says or proof.reason,
+        "stable": proof.stable,
+        "pieces": len(proof.certificate.get("pieces", ())),
+        "radius": proof.radius if proof else 0.0,
+        "distance": proof.distance if proof else 0.0,
+        "estimate": point.error.orbit,
+        "peak": bounds,
+        "accepted": accepted,
+        "seconds": round(seconds, 1),
+        "checked": round(checked, 1),
+    }
+
+
+def _checked(proof: per.Proof) -> tuple[bool, float]:
+    """Whether the checker accepts a certificate, alone, and in how many seconds."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "proof.json"
+        proof.save(path)
+        begun = time.perf_counter()
+        run = subprocess.run(
+            [sys.executable, "-I", check.__file__, str(path)], capture_output=True, check=False
+        )
+        return run.returncode == 0, time.perf_counter() - begun
+
+
+def shown(rows: Iterable[Mapping[str, Any]]) -> list[list[str]]:
+    """Return the rows of a section as its table has them."""
+    kinds = {True: "stable", False: "unstable", None: ""}
+    return [
+        [
+            each["label"],
+            f"{each['place']:.9g}",
+            (kinds[each["stable"]] or "proven") if each["proven"] else f"not decided: {each['says']}",
+            str(each["pieces"] or ""),
+            f"{each['radius']:.0e}" if each["proven"] else "",
+            f"{each['distance']:.1e}" if each["proven"] else "",
+            f"{each['estimate']:.1e}",
+            f"{each['seconds']:.1f}",
+            f"{each['checked']:.1f}" if each["proven"] else "",
+        ]
+        for each in rows
+    ]

@@ -1,0 +1,62 @@
+"""The report on proofs: its page is that of its sections, and quick ones are computed anew."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from reports.studies.pages.page import PAGE
+from reports.studies.proof.page import REPORT
+
+pytestmark = pytest.mark.studies
+pytest.importorskip("flint")
+
+FOLDER = REPORT.folder
+
+QUICK = ("stop", "van-der-pol", "impact-oscillator")
+"""Sections that take seconds."""
+
+NOT_DECIDED = {"journal-bearing": 1, "impact-oscillator": 1, "dry-810N": 1, "vitrea79-810N": 1}
+"""How many points of a section are not proven; none of the others."""
+
+
+@pytest.mark.parametrize(
+    "name", [n if n in QUICK else pytest.param(n, marks=pytest.mark.long) for n in REPORT.sections]
+)
+def test_sections_are_fresh(name: str) -> None:
+    """Assert that what is proven anew is what the page says, with boxes and distances of its size."""
+    kept, found = REPORT.kept(FOLDER)[name], REPORT.sections[name].compute(lambda _: None)
+    assert len(found.rows) == len(kept.rows)
+    for row, other in zip(found.rows, kept.rows, strict=True):
+        same = ("label", "proven", "stable", "pieces", "accepted")
+        assert [row[key] for key in same] == [other[key] for key in same]
+        assert row["place"] == pytest.approx(other["place"], rel=1e-7)
+        assert row["distance"] <= 10 * max(other["distance"], 1e-12)
+        assert row["radius"] <= max(10 * other["radius"], 1e-18)
+
+
+def test_what_is_proven() -> None:
+    """Assert what is not decided, that the checker accepts all else, and the greatest box."""
+    kept = REPORT.kept(FOLDER)
+    left = {name: sum(not row["proven"] for row in each.rows) for name, each in kept.items()}
+    assert {name: count for name, count in left.items() if count} == NOT_DECIDED
+    rows = [row for each in kept.values() for row in each.rows if row["proven"]]
+    assert all(row["accepted"] for row in rows)
+    assert max(row["radius"] for row in rows) < 1e-9
+
+
+def test_known_numbers() -> None:
+    """Assert the fold of the gear pair and the Duffing oscillator's in nine digits, twenty cycles of Lorenz'."""
+    kept = REPORT.kept(FOLDER)
+    folds = [row["place"] for row in kept["gear-pair"].rows if row["label"] == "LP"]
+    assert folds == pytest.approx([0.598153117286, 0.835837679095], rel=1e-9)
+    assert len(kept["lorenz"].rows) == 20
+
+
+def test_page_is_that_of_its_sections() -> None:
+    """Assert that text and numbers on the page are those of the code, and that nothing is missing."""
+    page = (FOLDER / PAGE).read_text("utf-8")
+    assert page == REPORT.text(FOLDER)
+    assert tuple(REPORT.kept(FOLDER)) == tuple(REPORT.sections)
+    assert not re.findall(r"\bnan\b|\binf\b", page)
