@@ -211,8 +211,8 @@ def _until(march: March, y: list[arb], end: Fraction, most: float) -> tuple[list
         grown = len(lengths) <= FORESEEN or lengths[-1] > GROWING * lengths[-1 - FORESEEN]
         if len(lengths) > MOST_STEPS or (left > MOST_STEPS and not grown):
             raise NotProvedError(
-                f"a piece of the orbit would take some {len(lengths) + left:.0f} steps, of {MOST_STEPS} at the "
-                f"most: its fastest motions are too fast for it"
+                f"a piece of the orbit would take some {len(lengths) + left:.0f} steps, of {MOST_STEPS} at "
+                f"the most: its fastest motions are too fast for it"
             )
         y = [arb(a.mid()) for a in taken.end()]
         growth *= _norm(taken)

@@ -21,7 +21,7 @@ Rates = Callable[[float, np.ndarray], Sequence[float]]
 
 @dataclass(frozen=True, kw_only=True)
 class Cycle:
-    """Cycles of equations with a parameter, each by a state near it and its period; the first component stays."""
+    """Cycles of equations with a parameter, each by a state near it and its period."""
 
     key: str
     title: str
