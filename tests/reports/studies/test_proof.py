@@ -47,7 +47,7 @@ def test_what_is_proven() -> None:
 
 
 def test_known_numbers() -> None:
-    """Assert the fold of the gear pair and the Duffing oscillator's in nine digits, twenty cycles of Lorenz'."""
+    """Assert the folds of the gear pair in nine digits, and that twenty cycles of Lorenz' are there."""
     kept = REPORT.kept(FOLDER)
     folds = [row["place"] for row in kept["gear-pair"].rows if row["label"] == "LP"]
     assert folds == pytest.approx([0.598153117286, 0.835837679095], rel=1e-9)
