@@ -150,6 +150,32 @@ def test_a_hertzian_contact_lost() -> None:
     assert len(proof.certificate["pieces"]) == 3
 
 
+def rubbing(friction: float) -> tuple[sym.CompiledSystem, per.Point]:
+    """A mass under dry friction, forced."""
+    x = sym.coordinate("x")
+    excited = sym.HarmonicForce(x, force=1.0, frequency=sym.parameter("Omega", 1.3))
+    parts = [
+        sym.Mass(x, 1.0),
+        sym.Damper(x, 0.1),
+        sym.Spring(x, 1.0),
+        sym.CoulombFriction(x, friction),
+        excited,
+    ]
+    system = sym.compile(sym.combine(parts))
+    return system, per.trace(system, "Omega", (1.2, 1.4))[0]
+
+
+def test_dry_friction() -> None:
+    """Assert that a mass that slips is proven, across jumps of its force, and one that sticks is not."""
+    system, point = rubbing(0.3)
+    proof = per.proved(system, point)
+    agrees(proof, point)
+    assert len(proof.certificate["pieces"]) == 3
+    assert min(abs(point.multipliers[0] - disc.centre) for disc in proof.multipliers) < 1e-8
+    system, point = rubbing(0.9)
+    assert not per.proved(system, point)
+
+
 def test_the_disc_of_1990() -> None:
     """Assert that its orbit in oil, whose film force is an unknown of the equations, is proven."""
     system = sym.scene("vitrea79-810N")
