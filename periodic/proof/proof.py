@@ -3,27 +3,23 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
 from periodic.bifurcations.label import Label
 from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import Orbit
+from periodic.proof.statement import equations
 from periodic.results.point import Point
-from periodic.system import System, check_system, frequency_of
-from periodic.system.written import Writing, WrittenLike
+from periodic.system import System, check_system, index_of
 
 EXTRA = "pip install 'orbitrace[proof]'"
 """What brings ball arithmetic along."""
-
-COMPARISONS = ("max", "min", "abs", "sign", "less")
-"""Functions of the text that pass from one branch to another."""
 
 CLAIMS = {Label.FOLD: "fold", Label.DOUBLING: "doubling"}
 """What is claimed of points with a label."""
@@ -168,6 +164,8 @@ def proved(system: System, what: Orbit | Point, parameter: str | None = None) ->
         For what is no orbit of the system, an equilibrium, and where a point is none with a proof.
     """
     check_system(system)
+    if parameter is not None:
+        index_of(system, parameter)
     claim, orbit = _asked(what, parameter)
     orbit = orbit.expressed_in(layout_of(system))
     try:
@@ -175,33 +173,13 @@ def proved(system: System, what: Orbit | Point, parameter: str | None = None) ->
     except ImportError as error:
         raise ImportError(f"proofs need python-flint; {EXTRA}") from error
     try:
-        given, values = _equations(system, orbit, claim, parameter)
+        given, values = equations(system, orbit, claim, parameter)
     except ValueError as error:
         return Proof(str(error))
     try:
         return _proved(system, orbit, claim, given, values)
     except (check.NotProvedError, ArithmeticError) as error:
         return Proof(str(error) or type(error).__name__)
-
-
-def needed(text: WrittenLike) -> tuple[list[str], list[str]]:
-    """Return the lines that a text's rates need, and the outputs that need no comparison besides these."""
-    words = {line.split(" = ")[0]: re.findall(r"\w+", line.split(" = ")[1]) for line in text.lines}
-
-    def behind(names: list[str]) -> set[str]:
-        found, left = set(), [name for name in names if name in words]
-        while left:
-            name = left.pop()
-            if name not in found:
-                found.add(name)
-                left += [word for word in words[name] if word in words]
-        return found
-
-    core = behind([*text.rates, *filter(None, [text.constraint])])
-    compared = {name for name, (first, *_) in words.items() if first in COMPARISONS}
-    outputs = [name for name in text.outputs if name[0] in "xv" and not (behind([name]) - core) & compared]
-    kept = core | behind(outputs)
-    return [line for line in text.lines if line.split(" = ")[0] in kept], outputs
 
 
 def _asked(what: Orbit | Point, parameter: str | None) -> tuple[str, Orbit]:
@@ -216,55 +194,6 @@ def _asked(what: Orbit | Point, parameter: str | None) -> tuple[str, Orbit]:
     if claim is None:
         raise ValueError("parameter is given; what must then be a point LP or PD of its branch")
     return claim, orbit
-
-
-def _equations(
-    system: System, orbit: Orbit, claim: str, parameter: str | None
-) -> tuple[dict[str, Any], dict[str, float]]:
-    """What a certificate begins with, and the values of all names. Raises ValueError without a text."""
-    if not hasattr(system, "written"):
-        raise ValueError("the system does not write its equations as text")
-    text = cast(Writing, system).written
-    lines, outputs = needed(text)
-    named = {system.parameters[i].name: p for p, i in text.values.items()}
-    values = {p: float(orbit.parameter[i]) for p, i in text.values.items()}
-    free = not any(
-        "t" in line.replace("(", " ").replace(")", " ").replace(",", " ").split() for line in lines
-    )
-    unknown = []
-    if free:
-        frequency = frequency_of(system)
-        if len(frequency) != 1 or claim != "orbit":
-            raise ValueError("folds and doublings of free oscillations are not proven, their orbits are")
-        unknown = [named[frequency[0]]]
-    if parameter is not None:
-        if parameter not in named:
-            raise ValueError(f"the equations do not depend on {parameter!r}")
-        unknown.append(named[parameter])
-    if claim != "orbit" and any(word in line for line in lines for word in ("less(", "sign(")):
-        raise ValueError("folds and doublings of systems whose equations jump are not proven")
-    names = {
-        "states": [each.name for each in (*system.states, *system.algebraics)],
-        "scales": [each.scale for each in (*system.states, *system.algebraics)],
-        "values": {p: name for name, p in named.items()},
-        "outputs": {
-            v.name: line for v, line in zip(system.outputs, text.outputs, strict=True) if line in outputs
-        },
-    }
-    given: dict[str, Any] = {
-        "format": "orbitrace proof 1",
-        "names": names,
-        "equations": {
-            "lines": lines,
-            "rates": list(text.rates),
-            "values": {p: repr(value) for p, value in values.items() if p not in unknown},
-        },
-        "turns": str(orbit.periods),
-        "unknown": unknown,
-    }
-    if text.constraint is not None:
-        given["equations"]["constraint"] = text.constraint
-    return given, values
 
 
 def _proved(

@@ -244,6 +244,7 @@ def test_not_decided_for_want_of_text() -> None:
     ("what", "parameter", "sentence"),
     [
         ("orbit", None, "what is a str; it must be an Orbit or a Point"),
+        ("point", "omega", "parameter is 'omega'; it must be one of "),
         ("point", "Omega", "parameter is given; what must then be a point LP or PD of its branch"),
     ],
 )
