@@ -351,7 +351,10 @@ class Orbit:
                         every[row, k * d + j] += by[i, j]
                     every[row, after * d + i] -= sign
         show(not anchors, "too many values are given")
-        step = every.solve(right)
+        try:
+            step = every.solve(right)
+        except ZeroDivisionError:
+            raise NotProvedError("the orbit may not be isolated: Newton's matrix may be singular") from None
         return [[c - step[k * d + i, 0] for i, c in enumerate(row)] for k, row in enumerate(self.centres)]
 
     def multipliers(self):

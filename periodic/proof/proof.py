@@ -176,10 +176,13 @@ def proved(system: System, what: Orbit | Point, parameter: str | None = None) ->
         given, values = equations(system, orbit, claim, parameter)
     except ValueError as error:
         return Proof(str(error))
+    before = check.ctx.prec, check.ctx.cap  # python-flint's own, which all that use it share
     try:
-        return _proved(system, orbit, claim, given, values)
+        return _proved(orbit, claim, given, values)
     except (check.NotProvedError, ArithmeticError) as error:
         return Proof(str(error) or type(error).__name__)
+    finally:
+        check.ctx.prec, check.ctx.cap = before
 
 
 def _asked(what: Orbit | Point, parameter: str | None) -> tuple[str, Orbit]:
@@ -196,9 +199,7 @@ def _asked(what: Orbit | Point, parameter: str | None) -> tuple[str, Orbit]:
     return claim, orbit
 
 
-def _proved(
-    system: System, orbit: Orbit, claim: str, given: dict[str, Any], values: dict[str, float]
-) -> Proof:
+def _proved(orbit: Orbit, claim: str, given: dict[str, Any], values: dict[str, float]) -> Proof:
     from periodic.proof import certificate as made
     from periodic.proof import check
     from periodic.proof.draft import BITS, ratio

@@ -65,6 +65,7 @@ def test_duffing_on_three_sheets() -> None:
     assert [proof.stable for proof in proofs] == [True, False, True]
     for proof, point in zip(proofs, points, strict=True):
         agrees(proof, point)
+    assert check.ctx.prec == 53  # python-flint's default, which others in this process may count on
 
 
 def test_an_orbit_agrees_with_dop853() -> None:
