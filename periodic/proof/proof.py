@@ -169,20 +169,22 @@ def proved(system: System, what: Orbit | Point, parameter: str | None = None) ->
     claim, orbit = _asked(what, parameter)
     orbit = orbit.expressed_in(layout_of(system))
     try:
-        from periodic.proof import check
+        from flint import ctx
+
+        from periodic.proof.check import NotProvedError
     except ImportError as error:
         raise ImportError(f"proofs need python-flint; {EXTRA}") from error
     try:
         given, values = equations(system, orbit, claim, parameter)
     except ValueError as error:
         return Proof(str(error))
-    before = check.ctx.prec, check.ctx.cap  # python-flint's own, which all that use it share
+    before = ctx.prec, ctx.cap  # python-flint's own, which all that use it share
     try:
         return _proved(orbit, claim, given, values)
-    except (check.NotProvedError, ArithmeticError) as error:
+    except (NotProvedError, ArithmeticError) as error:
         return Proof(str(error) or type(error).__name__)
     finally:
-        check.ctx.prec, check.ctx.cap = before
+        ctx.prec, ctx.cap = before
 
 
 def _asked(what: Orbit | Point, parameter: str | None) -> tuple[str, Orbit]:
