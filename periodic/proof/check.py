@@ -64,6 +64,7 @@ def mul(a, b):
 
 def power(a, p):
     """a^p, p constant; where p > 0, numbers below 0 of a ball count as 0."""
+    show(isinstance(p, arb), "an exponent varies")
     if isinstance(a, Dual):
         slope = mul(p, power(a.value, p - 1))
         return Dual(a.level, power(a.value, p), {j: mul(slope, s) for j, s in a.slopes.items()})
@@ -440,7 +441,7 @@ def main(path):
         show(given["digest"] == digest(given), "the certificate was changed")
         orbit = Orbit(given)
         orbit.verify()
-    except (NotProvedError, ArithmeticError, LookupError, TypeError, ValueError, OSError) as error:
+    except (NotProvedError, ArithmeticError, LookupError, TypeError, ValueError, AttributeError, OSError) as error:
         print(f"refused: {error}")
         return 1
     print(f"proved: {orbit.says()}")
