@@ -29,7 +29,7 @@ ROOM = 1024.0, 8.0, 5
 """Width of boxes over that of the Newton step's enclosure at their middle; factor on that, attempts."""
 
 LEAST_BOX = 1e-30
-"""Half width of a box at the least."""
+"""Half width of a box at the least, and margin of an output that is constant."""
 
 MARGIN = 1e-11
 """Part of its range by which an output's greatest value is claimed to be uncertain."""
@@ -208,7 +208,7 @@ def extremes(orbit: check.Orbit, names: Sequence[str]) -> dict[str, list[list[st
     for name in names:
         polynomials = [own[name] for own in values]
         about = [_greatest(polynomials, lengths, sign) for sign in (-1, 1)]
-        margin = MARGIN * max(sum(about), max(map(abs, about)) / 100)
+        margin = max(MARGIN * max(sum(about), max(map(abs, about)) / 100), LEAST_BOX)
         found[name] = [
             [ratio(sign * end) for end in _shown(polynomials, lengths, sign, most, margin)]
             for sign, most in zip((-1, 1), about, strict=True)

@@ -66,7 +66,7 @@ class Cycle:
 
         *rest, period = fsolve(missed, [*state[1:], period], xtol=1e-10)
         phase = np.linspace(0, 2 * np.pi, 1001)
-        times, begin = phase * period / (2 * np.pi), [first, *rest]
+        times, begin = np.linspace(0, period, len(phase)), [first, *rest]
         values = solve_ivp(self.rates, (0, period), begin, t_eval=times, rtol=1e-11, atol=1e-12).y.T
         values[-1] = values[0]
         name, value = self.parameter

@@ -38,12 +38,17 @@ class Scene:
         branch = per.trace(
             system, self.parameter, (min(begin, end), max(begin, end)), start=begin, at=list(self.at)
         )
-        orbits = [(point, None) for value in self.at for point in branch if point.parameter == value]
+        orbits = [(point, None) for value in self.at for point in branch if _is_at(point, value)]
         special = [(point, self.parameter) for point in branch if point.label in ("LP", "PD")]
         return proven(system, [*orbits, *(special if self.folds else [])], tell)
 
     def _context(self, kept: Kept) -> Mapping[str, Any]:
         return {"words": self.words, "axis": self.parameter, "table": shown(kept.rows)}
+
+
+def _is_at(point: per.Point, value: float) -> bool:
+    """Whether a point is at a value asked for; an end of the range is the same orbit once more."""
+    return point.parameter == value and point.label is not per.Label.END
 
 
 SCENES = (
