@@ -40,7 +40,7 @@ WIDER = 16.0, 8
 SAMPLES = 33
 """Places in a step at which an output is looked at for its greatest value."""
 
-DISC = 4.0
+DISC = 1.1
 """A multiplier is claimed to lie in a disc of so many times the width of its enclosure."""
 
 

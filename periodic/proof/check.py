@@ -113,25 +113,31 @@ class Problem:
     def __init__(self, given):
         text = given["equations"]
         self.values = {name: arb(number) for name, number in text["values"].items()}
-        self.unknown, self.lines = given["unknown"], []
+        self.unknown, self.lines, self.compared, self.jumping = given["unknown"], [], {}, set()
         known = {*self.values, *self.unknown, "t", *(f"x{i}" for i in range(len(text["rates"]) + ("constraint" in text)))}
         for line in text["lines"]:
             found = LINE.fullmatch(line)
             show(found, f"cannot read {line!r}")
             name, a, sign, b, function, first, second = found.groups()
             show((sign or function) in {**BINARY, **BRANCHES, **SLOPES} and name not in known, f"cannot read {line!r}")
-            operands = [each if each in known else arb(each) for each in (a or first, b or second or "0")]
-            self.lines.append((name, sign or function, *operands))
+            texts = a or first, b or second or "0"
+            self.lines.append((name, sign or function, *(each if each in known else arb(each) for each in texts)))
             known.add(name)
+            if function in BRANCHES:
+                self.compared[name] = frozenset(texts)
+            if function in ("less", "sign") or self.jumping & {*texts}:
+                self.jumping.add(name)
         self.rates = [name if name in known else arb(name) for name in text["rates"]]
-        self.compared = {n: frozenset(map(str, ab)) for n, kind, *ab in self.lines if kind in BRANCHES}
         self.kinds = {name: kind for name, kind, *_ in self.lines}
         self.sign = {"orbit": 0, "fold": 1, "doubling": -1}[given["claim"]]
         self.events, self.period = len(given["pieces"]) > 1, 2 * arb.pi() * int(given["turns"])
+        show(self.period > 0, "the orbit takes no time")
+        self.free_running = not any(re.search(r"\bt\b", line) for line in (*text["lines"], *text["rates"]))
         self.constraint, self.n = text.get("constraint"), len(text["rates"])
         self.first = self.n + bool(self.constraint)
         self.free = self.first + len(self.unknown)
         self.size = self.free + self.first * abs(self.sign) + 2 * self.events
+        show(not (self.jumping and (self.sign or self.constraint)), "the equations jump, and with them what must not")
 
     def at(self, y, s, sides):
         """Every value of the text at y; `?name` is the difference that a branch compares with 0."""
@@ -290,7 +296,8 @@ class Orbit:
         show(all(ratio(r) >= 0 for node in given["nodes"] for r in node["radius"]), "a box has no size")
         radii = [[arb(0, arb(ratio(r)).upper()) for r in node["radius"]] for node in given["nodes"]]
         self.boxes = [[c + r for c, r in zip(*each)] for each in zip(self.centres, radii)]
-        self.flows, self.steps, edge = [], [], None
+        show(not self.problem.events or all(box[-1] > 0 for box in self.boxes), "a piece takes no time")
+        self.flows, self.steps, self.kind, edge = [], [], None, None
         for piece, after in zip(given["pieces"], [*given["pieces"][1:], None]):
             edge = self._followed(piece, after, edge)
         show(len(self.flows) == len(self.boxes) and edge is None, "nodes and steps do not match")
@@ -298,6 +305,7 @@ class Orbit:
     def _followed(self, piece, after, edge):
         """Follow a piece from node to node; edge is what vanishes where it begins. Returns that of its end."""
         s, d, until = fmpq(0), self.problem.size, self.problem.compared[piece["until"]] if after else None
+        show(not until or not until & self.problem.jumping, "what vanishes at an event jumps there")
         show(sum(ratio(h) for node in piece["steps"] for h, _ in node) == 1, "the steps do not add up to a piece")
         for k, node in enumerate(piece["steps"]):
             point, box = self.centres[len(self.flows)], self.boxes[len(self.flows)]
@@ -402,6 +410,7 @@ class Orbit:
                 show(max(found) > sign * arb(ratio(inner)), "an output may not reach what is claimed")
         if "multipliers" in claims:
             self._stability(claims)
+            self.kind = claims["stable"]
 
     def _stability(self, claims):
         balls = self.multipliers()
@@ -414,7 +423,7 @@ class Orbit:
     def stable(self):
         """True or False, or None where that is not known."""
         balls = self.multipliers()
-        if self.problem.unknown:  # one of a free oscillation is 1
+        if self.problem.free_running:  # one of a free oscillation is 1
             at = [k for k, ball in enumerate(balls) if ball.overlaps(acb(1))]
             balls = [ball for k, ball in enumerate(balls) if [k] != at]
         inside = all(abs(ball) < 1 for ball in balls)
@@ -424,7 +433,7 @@ class Orbit:
         """What is proven, in a sentence; unknown values have the names that the certificate gives them."""
         names, first, box = self.given["names"]["values"], self.problem.first, self.boxes[0]
         known = [f"{names[u]} = {c.str(25)}" for u, c in zip(self.problem.unknown, box[first:])]
-        kind = {True: ", stable", False: ", unstable"}.get(self.given["claims"].get("stable"), "")
+        kind = {True: ", stable", False: ", unstable", None: ""}[self.kind]
         half = max(float(b.rad()) for node in self.boxes for b in node[: self.problem.n])
         what = {"orbit": "periodic orbit", "fold": "fold", "doubling": "period doubling"}[self.given["claim"]]
         what = f"in boxes of half width {half:.1e} at the most there is one {what}, and one only"

@@ -10,7 +10,7 @@ import numpy as np
 from flint import arb, fmpq
 
 from periodic.orbit.orbit import Orbit
-from periodic.proof.check import NotProvedError, Problem, Step, nth, taylor
+from periodic.proof.check import NotProvedError, Problem, Step, nth, taylor, value
 from periodic.proof.samples import Event, along, events
 
 BITS = 128
@@ -138,7 +138,15 @@ class March:
         known = all(
             float(by[i, j].rad()) <= ACCURATE_SLOPES for i in range(by.nrows()) for j in range(by.ncols())
         )
-        return taken if small and known else None
+        return taken if small and known and self._sides_known(taken) else None
+
+    def _sides_known(self, taken: Step) -> bool:
+        """Whether each comparison has its side half way through a step: it has there also beside an event."""
+        if not self.problem.compared:
+            return True
+        own = taken.polynomials()
+        middles = {name: value(own[f"?{name}"], taken.h / 2) for name in self.problem.compared}
+        return all(middle == 0 or self.sides[name] * middle > 0 for name, middle in middles.items())
 
     def _length(self, y: Sequence[arb]) -> tuple[float, int]:
         try:

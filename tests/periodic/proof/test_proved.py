@@ -276,6 +276,32 @@ def test_a_stranger_checks(tmp_path: Path) -> None:
     assert code == 1 and said.startswith("refused: ") and "Traceback" not in said
 
 
+def test_no_more_is_said_than_is_shown() -> None:
+    """Assert that the checker says no stability that it has not checked, and lets no jump pass for none."""
+    given = copy.deepcopy(stop().certificate)
+    del given["claims"]["multipliers"]
+    orbit = check.Orbit(given)
+    orbit.verify()
+    assert "stable" not in orbit.says()
+    lines = given["equations"]["lines"]
+    lines[-1:] = ["w0 = sign(x0, 0)", "w1 = x0 + w0", "w2 = max(w1, 0)", lines[-1]]
+    for piece in given["pieces"]:
+        piece["sides"] |= {"w0": 1, "w2": 1}
+    given["pieces"][0]["until"] = "w2"
+    with pytest.raises(check.NotProvedError, match="what vanishes at an event jumps there"):
+        check.Orbit(given)
+    given["claim"] = "fold"
+    with pytest.raises(check.NotProvedError, match="the equations jump, and with them what must not"):
+        check.Orbit(given)
+
+
+def test_a_forced_orbit_has_no_multiplier_that_is_left_out() -> None:
+    """Assert that only equations without t have a multiplier 1 that tells nothing of the stability."""
+    system = sym.scene("duffing")
+    given = per.proved(system, duffing().at(Omega=2.0)[0]).certificate
+    assert not check.Problem(given).free_running
+
+
 def places(given: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
     """Where the numbers, texts and lists of a certificate are."""
     items = given.items() if isinstance(given, dict) else enumerate(given) if isinstance(given, list) else ()
@@ -285,7 +311,7 @@ def places(given: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
 def falsified(given: dict[str, Any], rng: np.random.Generator) -> dict[str, Any]:
     """A certificate that claims what is not so, or proves nothing, with a digest of its own."""
     new = copy.deepcopy(given)
-    way = rng.integers(9)
+    way = rng.integers(10)
     if way == 0:  # other equations
         values = new["equations"]["values"]
         name = rng.choice([n for n, v in values.items() if float(v) != 0])
@@ -316,8 +342,11 @@ def falsified(given: dict[str, Any], rng: np.random.Generator) -> dict[str, Any]
     elif way == 7:  # not the whole period
         steps = new["pieces"][rng.integers(len(new["pieces"]))]["steps"]
         steps[rng.integers(len(steps))].pop()
-    else:
-        new["turns"] = str(int(new["turns"]) + int(rng.integers(1, 5)))
+    elif way == 8:  # time that runs backward, or longer
+        new["turns"] = str(int(rng.choice([-1, 0, 2, 3])))
+    else:  # a piece that runs backward
+        node = new["nodes"][rng.integers(len(new["nodes"]))]
+        node["centre"][-1] = "-" + node["centre"][-1]
     new["digest"] = check.digest(new)
     return new
 

@@ -17,9 +17,7 @@ FOLDER = REPORT.folder
 QUICK = ("stop", "van-der-pol", "impact-oscillator")
 """Sections that take seconds."""
 
-NOT_DECIDED = dict.fromkeys(
-    ("jeffcott-rub", "dry-810N", "vitrea79-810N", "journal-bearing", "impact-oscillator"), 1
-)
+NOT_DECIDED = dict.fromkeys(("dry-810N", "vitrea79-810N", "journal-bearing", "impact-oscillator"), 1)
 """How many points of a section are not proven; none of the others."""
 
 
