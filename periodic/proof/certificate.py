@@ -56,12 +56,15 @@ class Draft:
         The orbit's pieces.
     places, steps : list
         Nodes and steps of each.
+    anchors : list of (int, str)
+        Unknowns of the first node that are given, by their indices, and their values.
     """
 
     given: dict[str, Any]
     some: Sequence[Piece]
     places: list[list[Place]] = field(default_factory=list)
     steps: list[Steps] = field(default_factory=list)
+    anchors: list[tuple[int, str]] = field(default_factory=list)
 
     @property
     def problem(self) -> Problem:
@@ -73,7 +76,7 @@ class Draft:
         """Whether some steps are of order 1, as at the ends of a Hertzian contact."""
         return any(order != ORDER for steps in self.steps for node in steps for _, order in node)
 
-    def filled(self, anchors: Sequence[tuple[int, str]]) -> None:
+    def filled(self) -> None:
         """Write nodes, with boxes of no size, and steps."""
         nodes = [y for places in self.places for _, y in places]
         self.given["nodes"] = [{"centre": [ratio(a) for a in y], "radius": ["0/1"] * len(y)} for y in nodes]
@@ -81,22 +84,21 @@ class Draft:
             {"sides": piece.sides, "until": piece.until, "steps": steps}
             for piece, steps in zip(self.some, self.steps, strict=True)
         ]
-        self.given["anchors"] = [list(anchor) for anchor in anchors]
+        self.given["anchors"] = [list(anchor) for anchor in self.anchors]
 
-    def refined(self, anchors: Sequence[tuple[int, str]]) -> list[float]:
+    def refined(self) -> list[float]:
         """Iterate until the nodes are as good as the steps; return the last enclosure's width by unknown."""
-        self.filled(anchors)
         noise = self._iterated()
         for least in LEAST[1:] if self.singular else ():
             self.steps = [
                 stepped(self.problem, piece.sides, places, least)
                 for piece, places in zip(self.some, self.places, strict=True)
             ]
-            self.filled(anchors)
             noise = self._iterated()
         return noise
 
     def _iterated(self) -> list[float]:
+        self.filled()
         for _ in range(ITERATIONS):
             orbit = check.Orbit(self.given)
             new = orbit.newton()
@@ -111,7 +113,7 @@ class Draft:
                 raise NotProvedError("Newton's iteration fails: the orbit is at a fold, or too sensitive")
             found = iter(new)
             self.places = [[(s, [a.mid() for a in next(found)]) for s, _ in places] for places in self.places]
-            self.filled([(index, text) for index, text in self.given["anchors"]])
+            self.filled()
             if change < max(SETTLED * max(noise), KNOWN * self.singular):
                 return noise
         raise NotProvedError(f"Newton's iteration does not converge in {ITERATIONS} steps")
@@ -147,7 +149,7 @@ def tangent(draft: Draft, sign: int) -> tuple[int, list[Array]]:
 
     That component is 1 at the first node.
     """
-    draft.filled([])
+    draft.filled()
     orbit = check.Orbit(draft.given)
     n, m = orbit.problem.first, orbit.problem.n
     flows = [_floats(by, n) for _, _, by, _ in orbit.flows]
@@ -172,8 +174,8 @@ def _floats(a: Any, n: int) -> Array:
     return np.array([[float(a[i, j].mid()) for j in range(n)] for i in range(min(n, a.nrows()))])
 
 
-def extended(draft: Draft, claim: str) -> tuple[Draft, list[tuple[int, str]]]:
-    """Return the draft with the linearised equations beside it, for a fold or a doubling, and its anchor."""
+def extended(draft: Draft, claim: str) -> Draft:
+    """Return the draft with the linearised equations beside it, for a fold or a doubling."""
     largest, vectors = tangent(draft, 1 if claim == "fold" else -1)
     problem, remaining = draft.problem, iter(vectors)
     first = problem.free
@@ -186,15 +188,20 @@ def extended(draft: Draft, claim: str) -> tuple[Draft, list[tuple[int, str]]]:
         stepped(new.problem, piece.sides, some, LEAST[0])
         for piece, some in zip(new.some, places, strict=True)
     ]
-    return new, [(first + largest, "1/1")]
+    new.anchors = [(first + largest, "1/1")]
+    return new
 
 
-def discs(orbit: check.Orbit) -> list[list[str]]:
-    """Return discs around the multipliers, each with real and imaginary part and radius."""
+def discs(orbit: check.Orbit) -> list[list[str]] | None:
+    """Return discs around the multipliers, each real and imaginary part and radius; None if not known."""
+    try:
+        balls = orbit.multipliers()
+    except (NotProvedError, ZeroDivisionError):  # the orbit is there all the same
+        return None
     found: list[list[str]] = []
-    for ball in orbit.multipliers():
+    for ball in balls:
         if not ball.is_finite():
-            raise NotProvedError("the multipliers are not known")
+            return None
         radius = DISC * max(float(ball.real.rad()), float(ball.imag.rad()), 1e-30)
         found.append([ratio(ball.real), ratio(ball.imag), ratio(radius)])
     return found

@@ -18,6 +18,7 @@ import sys
 
 from flint import acb, acb_mat, arb, arb_mat, arb_series, ctx, fmpq
 
+FORMAT = "orbitrace proof 1"
 DEPTH, TRIES = 40, 6  # halvings of a step to find a sign, attempts to enclose a motion; no truth hangs on them
 
 class NotProvedError(Exception):
@@ -120,7 +121,7 @@ class Problem:
             show(found, f"cannot read {line!r}")
             name, a, sign, b, function, first, second = found.groups()
             show((sign or function) in {**BINARY, **BRANCHES, **SLOPES} and name not in known, f"cannot read {line!r}")
-            texts = a or first, b or second or "0"
+            texts = a or first, b or second or "0.0"
             self.lines.append((name, sign or function, *(each if each in known else arb(each) for each in texts)))
             known.add(name)
             if function in BRANCHES:
@@ -448,6 +449,7 @@ def main(path):
         with open(path, encoding="utf-8") as file:
             given = json.load(file)
         show(given["digest"] == digest(given), "the certificate was changed")
+        show(given["format"] == FORMAT, f"its format is not {FORMAT!r}")
         orbit = Orbit(given)
         orbit.verify()
     except (NotProvedError, ArithmeticError, LookupError, TypeError, ValueError, AttributeError, OSError) as error:

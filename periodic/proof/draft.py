@@ -113,10 +113,8 @@ class March:
         """Take the longest step from y, to `end` at the most; return its length and order, and the step."""
         left = end - self.s
         length, order = self._length(y)
-        if (
-            self.s and end == 1 and left <= 2 * self.least
-        ):  # only singularities at its end make steps so short
-            length, order = 1.0, 1
+        if self.s and end == 1 and left <= 2 * self.least:
+            length, order = 1.0, 1  # nothing but a singularity at the end of a piece makes steps so short
         h = min(Fraction(length), left)
         while (taken := self._taken(y, h, order)) is None:
             h *= SHORTER

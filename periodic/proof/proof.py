@@ -50,7 +50,7 @@ class Proof:
     reason : str
         Why it is not decided; empty where there is a proof.
     says : str
-        The theorem, in a sentence.
+        The theorem, in the checker's words.
     certificate : dict
         What `periodic/proof/check.py` checks without any other file.
     radius : float
@@ -206,16 +206,15 @@ def _proved(orbit: Orbit, claim: str, given: dict[str, Any], values: dict[str, f
     from periodic.proof import check
     from periodic.proof.draft import BITS, ratio
 
-    draft = made.drafted({**given, "bits": BITS}, values, orbit)
-    anchors: list[tuple[int, str]] = []
-    if claim == "orbit" and given["unknown"]:
-        anchors.append((0, ratio(draft.places[0][0][1][0])))
-    elif claim != "orbit":
-        draft, anchors = made.extended(draft, claim)
+    draft = made.drafted({**given, "format": check.FORMAT, "bits": BITS}, values, orbit)
+    if claim != "orbit":
+        draft = made.extended(draft, claim)
+    elif given["unknown"]:
+        draft.anchors.append((0, ratio(draft.places[0][0][1][0])))
     if draft.problem.events:
-        anchors.append((draft.problem.size - 2, "0/1"))
+        draft.anchors.append((draft.problem.size - 2, "0/1"))
     first = [y for places in draft.places for _, y in places]
-    found = draft.boxed(draft.refined(anchors))
+    found = draft.boxed(draft.refined())
     n = found.problem.n
     apart = [
         abs(a - b)
@@ -224,10 +223,8 @@ def _proved(orbit: Orbit, claim: str, given: dict[str, Any], values: dict[str, f
     ]
     outputs = given["names"]["outputs"]
     claims: dict[str, Any] = {"outputs": made.extremes(found, list(outputs.values()))}
-    stable = None
-    if claim == "orbit":
-        claims["multipliers"] = made.discs(found)
-        stable = claims["stable"] = found.stable()
+    if claim == "orbit" and (discs := made.discs(found)) is not None:
+        claims |= {"multipliers": discs, "stable": found.stable()}
     unknown = [_outward(ball) for ball in found.boxes[0][found.problem.first : found.problem.free]]
     proof = Proof(
         radius=max(float(box.rad()) for node in found.boxes for box in node[:n]),
@@ -236,7 +233,7 @@ def _proved(orbit: Orbit, claim: str, given: dict[str, Any], values: dict[str, f
             Disc(complex(_float(re), _float(im)), _float(radius))
             for re, im, radius in claims.get("multipliers", ())
         ),
-        stable=stable,
+        stable=claims.get("stable"),
         minimum={name: _bounds(claims["outputs"][line][0]) for name, line in outputs.items()},
         maximum={name: _bounds(claims["outputs"][line][1]) for name, line in outputs.items()},
         parameter=unknown[-1] if unknown else None,
@@ -245,7 +242,7 @@ def _proved(orbit: Orbit, claim: str, given: dict[str, Any], values: dict[str, f
     own["digest"] = check.digest(own)
     found.given = own
     found.verify()
-    return replace(proof, says=_said(proof, claim, given), certificate=own)
+    return replace(proof, says=found.says(), certificate=own)
 
 
 def _outward(ball: Any) -> tuple[float, float]:
@@ -260,16 +257,3 @@ def _float(text: str) -> float:
 def _bounds(both: list[str]) -> tuple[float, float]:
     low, high = sorted(map(_float, both))
     return float(np.nextafter(low, -np.inf)), float(np.nextafter(high, np.inf))
-
-
-def _said(proof: Proof, claim: str, given: dict[str, Any]) -> str:
-    """The theorem."""
-    kinds = {True: ", stable", False: ", unstable", None: ""}
-    if proof.parameter is None or claim == "orbit":
-        return (
-            f"in boxes of half width {proof.radius:.1e} at the most there is one periodic orbit, and one "
-            f"only{kinds[proof.stable]}"
-        )
-    name, (low, high) = given["names"]["values"][given["unknown"][-1]], proof.parameter
-    what = {"fold": "fold", "doubling": "period doubling"}[claim]
-    return f"there is a {what} with {name} from {low!r} to {high!r}"

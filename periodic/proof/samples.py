@@ -32,9 +32,12 @@ OPERATIONS: dict[str, Callable[..., Array]] = {
     "min": np.minimum,
     "abs": np.abs,
     "sign": np.sign,
-    "less": np.less,
+    "less": lambda a, b: (a < b) * 1.0,
 }
 """The operations of the text in floats."""
+
+ALONE = {*SLOPES, "abs", "sign"}
+"""Those of one value."""
 
 
 @dataclass(frozen=True)
@@ -57,8 +60,7 @@ def evaluated(problem: Problem, values: Mapping[str, float], state: Array, phase
             a, b = (at[o] if isinstance(o, str) else np.full(len(phase), float(o)) for o in operands)
             if name in problem.compared:
                 at[f"?{name}"] = a - b
-            alone = kind in SLOPES or kind in ("abs", "sign")
-            at[name] = OPERATIONS[kind](a) * 1.0 if alone else OPERATIONS[kind](a, b) * 1.0
+            at[name] = OPERATIONS[kind](a) if kind in ALONE else OPERATIONS[kind](a, b)
     return at
 
 

@@ -6,8 +6,7 @@ import re
 from typing import Any, cast
 
 from periodic.orbit.orbit import Orbit
-from periodic.system import System, frequency_of
-from periodic.system.written import Writing, WrittenLike
+from periodic.system import System, Writing, WrittenLike, frequency_of
 
 COMPARISONS = ("max", "min", "abs", "sign", "less")
 """Functions of the text that pass from one branch to another."""
@@ -64,7 +63,6 @@ def equations(
         },
     }
     given: dict[str, Any] = {
-        "format": "orbitrace proof 1",
         "names": names,
         "equations": {
             "lines": lines,

@@ -45,6 +45,7 @@ from periodic.system.events import (
 from periodic.system.motion import Flowing, FlowLike, Happened, Moving, TrajectoryLike
 from periodic.system.split import Condensable, LinearPart, ModesLike, Split, Within, linear_of
 from periodic.system.timing import Timed, frequency_factor_of, frequency_held_of, frequency_of
+from periodic.system.written import Writing, WrittenLike
 
 __all__ = [
     "HELD",
@@ -79,6 +80,8 @@ __all__ = [
     "TrajectoryLike",
     "VariableLike",
     "Within",
+    "Writing",
+    "WrittenLike",
     "address_of",
     "check_continuous",
     "check_system",

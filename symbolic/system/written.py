@@ -7,7 +7,8 @@ x0.. are the scaled states, t is tau, p0.. are the parameters in SI. less(a, b) 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import casadi as ca
@@ -84,7 +85,7 @@ class Written:
 
 
 def written(e: Expressions) -> Written:
-    """Return the equations of a system without unknowns.
+    """Return the equations of a system with one unknown at the most.
 
     Parameters
     ----------
@@ -115,18 +116,14 @@ def written(e: Expressions) -> Written:
     outputs, x = ca.substitute(e.outputs, e.rate, rates), ca.vertcat(e.state, e.algebraic)
     names = [[f"x{i}" for i in range(n + m)], ["t"], [f"p{i}" for i in range(e.parameter.numel())]]
     found = _Lines(ca.Function("text", [x, e.phase, e.parameter], [rates, outputs, constraint]), names)
-    both = found.results
-    used = {
-        word
-        for line in (*found.lines, *both[0], *both[1])
-        for word in line.replace(")", "").replace("(", " ").replace(",", "").split()
-    }
+    first, second, third = (tuple(each) for each in found.results)
+    used = set(re.findall(r"\bp\d+\b", " ".join((*found.lines, *first, *second))))
     values = {name: i for i, name in enumerate(names[2]) if name in used}
-    return Written(tuple(found.lines), tuple(both[0]), tuple(both[1]), both[2][0] if m else None, values)
+    return Written(tuple(found.lines), first, second, third[0] if m else None, values)
 
 
 def _explicit(e: Expressions, n: int) -> tuple[ca.SX, ca.SX]:
-    """dx/dtau, and what vanishes, of an unknown that the last row determines."""
+    """dx/dtau, and what vanishes: the row without rates that determines an unknown; none without unknowns."""
     if not e.algebraic.numel():
         return explicit_rates(e), ca.SX(0, 1)
     if any(e.residual[i].is_zero() for i in range(n)):
@@ -195,8 +192,5 @@ class _Lines:
 
 
 def _name(operation: int) -> str:
-    return next(_names(operation), str(operation))
-
-
-def _names(operation: int) -> Iterator[str]:
-    return (name[3:].lower() for name in dir(ca) if name.startswith("OP_") and getattr(ca, name) == operation)
+    """What CasADi calls an operation."""
+    return next(n[3:].lower() for n in dir(ca) if n.startswith("OP_") and getattr(ca, n) == operation)

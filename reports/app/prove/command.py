@@ -78,16 +78,18 @@ def _run(task: Task, folder: Path, *, folds: bool) -> int:
 
     with interrupting_once():
         try:
-            found = run.proven(task, folder, folds=folds)
+            branch, found = run.proven(task, folder, folds=folds)
         except KeyboardInterrupt:
             say("interrupted; nothing was saved")
             return INTERRUPTED
     files = run.save(folder, found)
     _show(task, found, files)
+    early = any(stop.reason.numerical for stop in branch.stops)
+    if early:
+        say(f"stopped early ({branch.ending})")
     if not found:
         say("the branch has no such points")
-        return STOPPED_EARLY
-    return DONE if all(each.proof for each in found) else STOPPED_EARLY
+    return DONE if found and not early and all(each.proof for each in found) else STOPPED_EARLY
 
 
 def _show(task: Task, found: list[Proven], files: list[Path]) -> None:

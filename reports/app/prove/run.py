@@ -5,15 +5,18 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 import periodic as per
+from periodic.proof.proof import EXTRA
 from symbolic.scenes.building import build
 from symbolic.scenes.errors import InputError
 
 from .. import console
 from ..files import write
 from ..request import Task
+from ..rest import check_rest
 from ..trace.run import JOURNAL, Effort, trace
 from ..view import view_of
 
@@ -44,31 +47,31 @@ class Proven:
         return f"{self.proof.distance:.1e}" if self.proof else ""
 
 
-def proven(task: Task, folder: Path, *, folds: bool) -> list[Proven]:
+def proven(task: Task, folder: Path, *, folds: bool) -> tuple[per.Branch, list[Proven]]:
     """Trace the branch of a scene, and prove what is asked for. Raises KeyboardInterrupt, InputError."""
-    try:
-        import flint  # noqa: F401
-    except ImportError as error:
-        raise InputError("prove", "needs python-flint", "pip install 'orbitrace[proof]' brings it") from error
+    if find_spec("flint") is None:
+        raise InputError("prove", "needs python-flint", f"{EXTRA} brings it")
     view, system = view_of(task.scene), build(task.scene)
     branch = trace(task, Effort(accuracy="STANDARD", method="collocation"), folder)
     (folder / JOURNAL).unlink(missing_ok=True)
     if branch.stop.reason is per.Reason.INTERRUPTED:
         raise KeyboardInterrupt
-    asked = [value * view.unit for value in task.at]
-    chosen = [
-        (point, None) for point in branch if any(abs(point.parameter - v) <= 1e-12 * abs(v) for v in asked)
-    ]
+    if not len(branch):
+        check_rest(task)
+        return branch, []
+    values = [point.parameter for point in branch]
+    passed = [v for v in (value * view.unit for value in task.at) if min(values) <= v <= max(values)]
+    chosen = [(point, None) for value in passed for point in branch.at(**{view.parameter: value})]
     special = [point for point in branch if point.label in (per.Label.FOLD, per.Label.DOUBLING)] * folds
     both = [*chosen, *((point, view.parameter) for point in special)]
-    found = []
+    found: list[Proven] = []
     with console.counting("proving", len(both)) as counted:
         for point, parameter in both:
             proof = per.proved(system, point, parameter)
             found.append(Proven(label=point.label.value, value=point.parameter, proof=proof))
             if counted is not None:
                 counted(found[-1])
-    return found
+    return branch, found
 
 
 def save(folder: Path, found: list[Proven]) -> list[Path]:

@@ -38,17 +38,12 @@ class Scene:
         branch = per.trace(
             system, self.parameter, (min(begin, end), max(begin, end)), start=begin, at=list(self.at)
         )
-        orbits = [(point, None) for value in self.at for point in branch if _is_at(point, value)]
+        orbits = [(point, None) for value in self.at for point in branch.at(**{self.parameter: value})]
         special = [(point, self.parameter) for point in branch if point.label in ("LP", "PD")]
         return proven(system, [*orbits, *(special if self.folds else [])], tell)
 
     def _context(self, kept: Kept) -> Mapping[str, Any]:
         return {"words": self.words, "axis": self.parameter, "table": shown(kept.rows)}
-
-
-def _is_at(point: per.Point, value: float) -> bool:
-    """Whether a point is at a value asked for; an end of the range is the same orbit once more."""
-    return point.parameter == value and point.label is not per.Label.END
 
 
 SCENES = (
@@ -94,8 +89,8 @@ SCENES = (
         at=(20.0, 45.0),
         folds=True,
         words="The disc of 1990 in oil, an unknown of its own, the load, beside the states. In contact it is "
-        "proven, and so is the fold at which the resonance ends; where the load falls by ten decades and "
-        "more it is not.",
+        "proven, and so is the fold at which the resonance ends; where contact is lost, and the load falls "
+        "by more than ten decades, it is not.",
     ),
     Scene(key="cavitating-film-810N", parameter="speed", range=(52.0, 54.0), at=(52.0,)),
     Scene(key="third-order-810N", parameter="speed", range=(52.0, 54.0), at=(52.0,)),
@@ -119,7 +114,7 @@ SCENES = (
         parameter="speed",
         range=(314.0, 320.0),
         at=(314.0,),
-        words="Oil damps the journal within a thousandth of a turn, and the steps are no longer than that.",
+        words="Oil damps the journal's motion so fast that a turn would take thousands of steps.",
     ),
     Scene(key="impact-oscillator", parameter="Omega", range=(0.9, 0.95), at=(0.9,)),
 )

@@ -95,7 +95,8 @@ def test_folds_of_duffing() -> None:
         low, high = proof.parameter or (0.0, 0.0)
         assert low < high < low + 1e-14
         assert point.parameter == pytest.approx(low, rel=1e-9)
-        assert re.fullmatch(r"there is a fold with Omega from [\d.]+ to [\d.]+", proof.says)
+        said = r"in boxes of half width \S+ at the most there is one fold, and one only, Omega = \[(\S+) \+/- .*\]"
+        assert (found := re.fullmatch(said, proof.says)) and low <= float(found[1]) <= high
 
 
 def test_folds_of_a_gear_pair_that_loses_contact() -> None:
@@ -218,6 +219,43 @@ def test_roessler() -> None:
     assert 2 * np.pi / (proof.parameter or (0.0,))[0] == pytest.approx(5.8810884555, abs=1e-10)
     assert proof.stable is False
     assert min(abs(disc.centre + 2.4039535318) for disc in proof.multipliers) < 1e-9
+
+
+def test_multipliers_that_are_not_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that an orbit is proven to be there where its multipliers cannot be enclosed, and no more is said."""
+
+    def unknown(_: object) -> None:
+        raise check.NotProvedError("the multipliers are too far apart")
+
+    monkeypatch.setattr(check, "upright", unknown)
+    proof = per.proved(sym.scene("duffing"), duffing().at(Omega=2.0)[0])
+    assert proof and proof.stable is None and not proof.multipliers
+    assert proof.says.endswith("one periodic orbit, and one only")
+
+
+def test_comparisons_of_one_place(tmp_path: Path) -> None:
+    """Assert that |x| and max(x, 0), which change at one place, make one event of it."""
+    system = sym.compile(
+        sym.Equations(
+            lambda x, p, wave: {
+                "x": x.v,
+                "v": wave.cos
+                - x.x
+                - 0.2 * x.v
+                - 0.3 * sym.functions.fabs(x.x)
+                - sym.functions.fmax(x.x, 0.0),
+            },
+            states={"x": 0.0, "v": 0.0},
+            parameters={"Omega": 2.0},
+            frequency="Omega",
+        )
+    )
+    point = per.trace(system, "Omega", (1.9, 2.1))[0]
+    proof = per.proved(system, point)
+    agrees(proof, point)
+    assert len(proof.certificate["pieces"]) == 3
+    proof.save(tmp_path / "proof.json")
+    assert checked(tmp_path / "proof.json") == (0, f"proved: {proof.says}\n")
 
 
 def test_not_decided_beside_a_grazing() -> None:

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+import periodic as per
+import symbolic as sym
 from reports.app.cli import main
 
 pytest.importorskip("flint")
@@ -30,6 +32,22 @@ def test_not_decided(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert main(["prove", "impact-oscillator", "--at", "0.9", "--out", str(tmp_path / "out")]) == 3
     assert "not decided: the system has impacts; they are not written as text" in capsys.readouterr().out
     assert not list((tmp_path / "out").glob("proof-*.json"))
+
+
+def test_a_branch_that_stopped_early(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Assert that what is there is proven, and the exit code and the reason tell that it is not all."""
+
+    def cut_short(*_: object) -> per.Branch:
+        few = per.ArclengthControl(max_points=3)
+        return per.trace(sym.scene("duffing"), "Omega", (0.3, 3.0), at=[0.3, 2.0], control=few)
+
+    monkeypatch.setattr("reports.app.prove.run.trace", cut_short)
+    assert main(["prove", "duffing", "--at", "0.3,2", "--out", str(tmp_path / "out")]) == 3
+    told = capsys.readouterr()
+    assert told.out.count("proven, stable") == 1
+    assert told.err.startswith("orbitrace: stopped early (")
 
 
 def test_no_such_points(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
