@@ -222,7 +222,7 @@ def test_roessler() -> None:
 
 
 def test_multipliers_that_are_not_known(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Assert that an orbit whose multipliers cannot be enclosed is proven to be there, and no more is said."""
+    """Assert that an orbit whose multipliers are not known is proven to be there, and no more is said."""
 
     def unknown(_: object) -> None:
         raise check.NotProvedError("the multipliers are too far apart")
