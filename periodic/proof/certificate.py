@@ -14,7 +14,18 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.proof import check
 from periodic.proof.check import NotProvedError, Problem, value
-from periodic.proof.draft import BITS, LEAST, ORDER, Piece, Place, Steps, pieces, placed, ratio, stepped
+from periodic.proof.draft import (
+    LEAST,
+    POINT,
+    Fineness,
+    Piece,
+    Place,
+    Steps,
+    pieces,
+    placed,
+    ratio,
+    stepped,
+)
 
 ITERATIONS = 8
 """Newton's iterations on a draft at the most; they converge quadratically."""
@@ -56,15 +67,19 @@ class Draft:
         The orbit's pieces.
     places, steps : list
         Nodes and steps of each.
-    anchors : list of (int, str)
-        Unknowns of the first node that are given, by their indices, and their values.
+    anchors : list of (str, int, str)
+        What is given at the first node: a name of the text, 1 where its change along v is meant, else 0, and
+        the value, or both ends of a range.
+    fine : Fineness
+        How finely motions are followed.
     """
 
     given: dict[str, Any]
     some: Sequence[Piece]
     places: list[list[Place]] = field(default_factory=list)
     steps: list[Steps] = field(default_factory=list)
-    anchors: list[tuple[int, str]] = field(default_factory=list)
+    anchors: list[tuple[str | int, ...]] = field(default_factory=list)
+    fine: Fineness = POINT
 
     @property
     def problem(self) -> Problem:
@@ -74,7 +89,7 @@ class Draft:
     @property
     def singular(self) -> bool:
         """Whether some steps are of order 1, as at the ends of a Hertzian contact."""
-        return any(order != ORDER for steps in self.steps for node in steps for _, order in node)
+        return any(order != self.fine.order for steps in self.steps for node in steps for _, order in node)
 
     def filled(self) -> None:
         """Write nodes, with boxes of no size, and steps."""
@@ -91,7 +106,7 @@ class Draft:
         noise = self._iterated()
         for least in LEAST[1:] if self.singular else ():
             self.steps = [
-                stepped(self.problem, piece.sides, places, least)
+                stepped(self.problem, piece.sides, places, least, self.fine)
                 for piece, places in zip(self.some, self.places, strict=True)
             ]
             noise = self._iterated()
@@ -133,13 +148,16 @@ class Draft:
         raise NotProvedError("no box could be shown to hold the orbit")
 
 
-def drafted(given: dict[str, Any], values: Mapping[str, float], orbit: Orbit) -> Draft:
+def drafted(
+    given: dict[str, Any], values: Mapping[str, float], orbit: Orbit, fine: Fineness = POINT
+) -> Draft:
     """Return the draft of a certificate of an orbit, with equations and values of all names given."""
-    ctx.prec = BITS
-    some = pieces(Problem({**given, "claim": "orbit", "pieces": [{}]}), values, orbit)
-    draft = Draft({**given, "claim": "orbit", "pieces": some}, some)
+    ctx.prec = fine.bits
+    given = {**given, "format": check.FORMAT, "bits": fine.bits, "claim": "orbit"}
+    some = pieces(Problem({**given, "pieces": [{}]}), values, orbit, given["names"]["impacts"])
+    draft = Draft({**given, "pieces": some}, some, fine=fine)
     unknown = [values[name] for name in given["unknown"]]
-    both = [placed(draft.problem, orbit, piece, unknown) for piece in some]
+    both = [placed(draft.problem, orbit, piece, unknown, fine) for piece in some]
     draft.places, draft.steps = [a for a, _ in both], [b for _, b in both]
     return draft
 
@@ -188,50 +206,70 @@ def extended(draft: Draft, claim: str) -> Draft:
         stepped(new.problem, piece.sides, some, LEAST[0])
         for piece, some in zip(new.some, places, strict=True)
     ]
-    new.anchors = [(first + largest, "1/1")]
+    new.anchors = [(f"x{largest}", 1, "1/1")]
     return new
+
+
+def based(orbit: check.Orbit) -> None:
+    """Give the nodes bases that keep apart what grows and what decays on the way to them."""
+    basis = np.eye(orbit.problem.first)
+    for by, node in zip(orbit.transitions(), orbit.given["nodes"][1:], strict=False):
+        moved = _floats(by, len(basis)) @ basis
+        order = np.argsort(-np.linalg.norm(moved, axis=0), kind="stable")
+        basis = np.linalg.qr(moved[:, order])[0]
+        node["basis"] = [[repr(float(a)) for a in row] for row in basis]
 
 
 def discs(orbit: check.Orbit) -> list[list[str]] | None:
     """Return discs around the multipliers, each real and imaginary part and radius; None if not known."""
     try:
-        balls = orbit.multipliers()
-    except (NotProvedError, ZeroDivisionError):  # the orbit is there all the same
+        based(orbit)
+        orbit.balls = orbit.multipliers()
+    except (NotProvedError, ZeroDivisionError, np.linalg.LinAlgError):  # the orbit is there all the same
+        orbit.balls = None
         return None
     found: list[list[str]] = []
-    for ball in balls:
+    for ball in orbit.balls:
         if not ball.is_finite():
+            orbit.balls = None
             return None
         radius = DISC * max(float(ball.real.rad()), float(ball.imag.rad()), 1e-30)
         found.append([ratio(ball.real), ratio(ball.imag), ratio(radius)])
     return found
 
 
-def extremes(orbit: check.Orbit, names: Sequence[str]) -> dict[str, list[list[str]]]:
-    """Return for each output (inner, outer) bounds of its least and of its greatest value."""
+def extremes(orbit: check.Orbit, names: Sequence[str]) -> dict[str, list[list[object]]]:
+    """Return for each output (step, place, inner, outer): bounds of its least and of its greatest value.
+
+    In that step, at that place, it is beyond the inner bound.
+    """
     values = [step.polynomials() for step, *_ in orbit.steps]
     lengths = [step.h for step, *_ in orbit.steps]
     found = {}
     for name in names:
         polynomials = [own[name] for own in values]
         about = [_greatest(polynomials, lengths, sign) for sign in (-1, 1)]
-        margin = max(MARGIN * max(sum(about), max(map(abs, about)) / 100), LEAST_BOX)
+        least, greatest = (most for most, *_ in about)
+        margin = max(MARGIN * max(least + greatest, abs(least) / 100, abs(greatest) / 100), LEAST_BOX)
         found[name] = [
-            [ratio(sign * end) for end in _shown(polynomials, lengths, sign, most, margin)]
-            for sign, most in zip((-1, 1), about, strict=True)
+            [k, ratio(place), *_shown(polynomials, lengths, sign, k, place, margin)]
+            for sign, (_, k, place) in zip((-1, 1), about, strict=True)
         ]
     return found
 
 
-def _greatest(polynomials: Sequence[list[arb]], lengths: Sequence[arb], sign: int) -> float:
-    """About the greatest value of sign times an output."""
+def _greatest(
+    polynomials: Sequence[list[arb]], lengths: Sequence[arb], sign: int
+) -> tuple[float, int, float]:
+    """About the greatest value of sign times an output, in which step it is, and where in it."""
     most, where = -np.inf, (0, 0.0, 0.0)
     for k, (p, length) in enumerate(zip(polynomials, lengths, strict=True)):
         at = np.linspace(0.0, float(length), SAMPLES)
         along = sign * np.polynomial.polynomial.polyval(at, [float(c.mid()) for c in p])
         best = int(along.argmax())
         if along[best] > most:
-            most, where = float(along[best]), (k, at[max(best - 1, 0)], at[min(best + 1, SAMPLES - 1)])
+            most, place = float(along[best]), float(at[best])
+            where = (k, at[max(best - 1, 0)], at[min(best + 1, SAMPLES - 1)])
     k, a, b = where
     finer = minimize_scalar(
         lambda t: -sign * float(value(polynomials[k], arb(t)).mid()),
@@ -239,23 +277,23 @@ def _greatest(polynomials: Sequence[list[arb]], lengths: Sequence[arb], sign: in
         method="bounded",
         options={"xatol": 1e-12 * max(b - a, 1e-300)},
     )
-    return max(most, -float(finer.fun))
+    return (-float(finer.fun), k, float(finer.x)) if -float(finer.fun) > most else (most, k, place)
 
 
 def _shown(
-    polynomials: Sequence[list[arb]], lengths: Sequence[arb], sign: int, most: float, margin: float
-) -> tuple[float, float]:
-    """A value that sign times an output exceeds somewhere, and one that it exceeds nowhere."""
+    polynomials: Sequence[list[arb]], lengths: Sequence[arb], sign: int, k: int, place: float, margin: float
+) -> tuple[str, str]:
+    """A value that an output is beyond at a place of a step, and one that it is beyond nowhere."""
     wider, attempts = WIDER
+    reached = sign * value(polynomials[k], arb(place))
     for _ in range(attempts):
-        bound = most + margin
+        bound = float(reached.upper()) + margin
         try:
-            found = [
-                float(check.greatest([sign * c for c in p], arb(0), h, arb(bound)))
-                for p, h in zip(polynomials, lengths, strict=True)
-            ]
+            for p, h in zip(polynomials, lengths, strict=True):
+                left = [bound - sign * p[0], *(-sign * c for c in p[1:])]
+                check.keeps(left, "an output may be beyond a bound", arb(0), h)
         except NotProvedError:
             margin *= wider
             continue
-        return max(found) - margin, bound
+        return ratio(sign * (float(reached.lower()) - margin)), ratio(sign * bound)
     raise NotProvedError("the extremes of an output are not known")

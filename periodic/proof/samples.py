@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.proof.check import SLOPES, Problem
+from periodic.proof.check import OF_TWO, Problem
 
 PER_INTERVAL = 16
 """Samples in each interval of the mesh, between which comparisons are looked at for a change of sign."""
@@ -36,9 +36,6 @@ OPERATIONS: dict[str, Callable[..., Array]] = {
 }
 """The operations of the text in floats."""
 
-ALONE = {*SLOPES, "abs", "sign"}
-"""Those of one value."""
-
 
 @dataclass(frozen=True)
 class Event:
@@ -56,11 +53,11 @@ def evaluated(problem: Problem, values: Mapping[str, float], state: Array, phase
     at: dict[str, Array] = {f"x{i}": state[:, i] for i in range(state.shape[1])}
     at |= {"t": phase} | {name: np.full(len(phase), value) for name, value in values.items()}
     with np.errstate(all="ignore"):
-        for name, kind, *operands in problem.lines:
-            a, b = (at[o] if isinstance(o, str) else np.full(len(phase), float(o)) for o in operands)
+        for name, kind, operands in problem.lines:
+            a = [at[o] if isinstance(o, str) else np.full(len(phase), float(o)) for o in operands]
             if name in problem.compared:
-                at[f"?{name}"] = a - b
-            at[name] = OPERATIONS[kind](a) if kind in ALONE else OPERATIONS[kind](a, b)
+                at[f"?{name}"] = a[0] - a[1]
+            at[name] = OPERATIONS[kind](*(a if kind in OF_TWO else a[:1]))
     return at
 
 
@@ -70,8 +67,10 @@ def along(problem: Problem, values: Mapping[str, float], orbit: Orbit, phase: Ar
     return evaluated(problem, values, both, phase)
 
 
-def events(problem: Problem, values: Mapping[str, float], orbit: Orbit) -> list[Event]:
-    """Return the events along an orbit, in order."""
+def events(
+    problem: Problem, values: Mapping[str, float], orbit: Orbit, impacts: Mapping[str, int]
+) -> list[Event]:
+    """Return the events along an orbit, in order; impacts, by the index of their switch, it has itself."""
     fractions = (np.arange(PER_INTERVAL) + 0.5) / PER_INTERVAL
     phase = (orbit.grid.left[:, None] + orbit.grid.width[:, None] * fractions).ravel()
     phase = np.sort(phase % orbit.mesh.period)
@@ -79,7 +78,14 @@ def events(problem: Problem, values: Mapping[str, float], orbit: Orbit) -> list[
     edges: dict[frozenset[str], list[str]] = {}
     for name, edge in problem.compared.items():
         edges.setdefault(edge, []).append(name)
-    found = []
+    found = [
+        Event(float(place) % orbit.mesh.period, (name,))
+        for name, switch in impacts.items()
+        for place, event in zip(orbit.phases, orbit.mesh.events, strict=True)
+        if event.switch == switch and event.level == 0
+    ]
+    for name in impacts:
+        del edges[problem.compared[name]]
     for names in edges.values():
         argument = at[f"?{names[0]}"]
 

@@ -25,7 +25,8 @@ def needed(text: WrittenLike) -> tuple[list[str], list[str]]:
                 left += [word for word in words[name] if word in words]
         return found
 
-    core = behind([*text.rates, *filter(None, [text.constraint])])
+    struck = [name for guard, names in text.resets.items() for name in (guard, *names)]
+    core = behind([*text.rates, *filter(None, [text.constraint]), *struck])
     compared = {name for name, (first, *_) in words.items() if first in COMPARISONS}
     outputs = [name for name in text.outputs if name[0] in "xv" and not (behind([name]) - core) & compared]
     kept = core | behind(outputs)
@@ -45,14 +46,16 @@ def equations(
     unknown = []
     if not any(re.search(r"\bt\b", line) for line in lines):
         frequency = frequency_of(system)
-        if len(frequency) != 1 or claim != "orbit":
+        if len(frequency) != 1 or claim in ("fold", "doubling"):
             raise ValueError("folds and doublings of free oscillations are not proven, their orbits are")
         unknown = [named[frequency[0]]]
     if parameter is not None:
         if parameter not in named:
             raise ValueError(f"the equations do not depend on {parameter!r}")
         unknown.append(named[parameter])
-    if claim != "orbit" and any(word in line for line in lines for word in ("less(", "sign(")):
+    if claim in ("fold", "doubling") and (
+        text.resets or any(word in line for line in lines for word in ("less(", "sign("))
+    ):
         raise ValueError("folds and doublings of systems whose equations jump are not proven")
     names = {
         "states": [each.name for each in (*system.states, *system.algebraics)],
@@ -61,6 +64,7 @@ def equations(
         "outputs": {
             v.name: line for v, line in zip(system.outputs, text.outputs, strict=True) if line in outputs
         },
+        "impacts": dict(text.impacts),
     }
     given: dict[str, Any] = {
         "names": names,
@@ -74,4 +78,6 @@ def equations(
     }
     if text.constraint is not None:
         given["equations"]["constraint"] = text.constraint
+    if text.resets:
+        given["equations"]["resets"] = {guard: list(names) for guard, names in text.resets.items()}
     return given, values

@@ -13,6 +13,8 @@ class WrittenLike(Protocol):
 
     lines: one for each operation. rates, outputs: names of lines. values: names of the parameters, p0..,
     that occur in them, with their indices. constraint: the line that vanishes, of a system with an unknown.
+    resets: by the line max(s, 0) of a wall, which a motion stays before, the names of the states after an
+    impact. impacts: the indices of the walls' switches by these lines.
     """
 
     @property
@@ -23,6 +25,10 @@ class WrittenLike(Protocol):
     def outputs(self) -> Sequence[str]: ...
     @property
     def constraint(self) -> str | None: ...
+    @property
+    def resets(self) -> Mapping[str, Sequence[str]]: ...
+    @property
+    def impacts(self) -> Mapping[str, int]: ...
     @property
     def values(self) -> Mapping[str, int]: ...
 

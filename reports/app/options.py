@@ -37,6 +37,9 @@ Out = Annotated[
 ]
 
 
+Html = Annotated[
+    bool, typer.Option("--html", help="Also write branch.html, a page that shows the orbit pointed at.")
+]
 Axis = Annotated[
     str | None,
     typer.Option(

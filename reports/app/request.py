@@ -55,7 +55,7 @@ def validated(request: Request) -> Task:
             raise error.renamed({key: options[key] for key in given}) from None
     if request.axis is not None:
         scene = _on_axis(scene, request.axis)
-    return Task(scene=_titled(scene, request.overrides), at=_points(scene, request.at))
+    return Task(scene=_titled(scene, request.overrides), at=values(scene, request.at, "--at"))
 
 
 def _on_axis(scene: Scene, axis: str) -> Scene:
@@ -80,14 +80,14 @@ def _titled(scene: Scene, overrides: tuple[Override, ...]) -> Scene:
     return scene.model_copy(update={"title": ", ".join([scene.title, *changes])})
 
 
-def _points(scene: Scene, text: str | None) -> tuple[float, ...]:
-    """Return the numbers of a comma-separated list that all lie in the scene's range."""
+def values(scene: Scene, text: str | None, option: str) -> tuple[float, ...]:
+    """Return the numbers of a comma-separated list that all lie in the scene's range. Raises InputError."""
     low, high = sorted(scene.trace.ends)
-    values = [_number(item) for item in text.split(",")] if text is not None else []
-    if not all(low <= value <= high for value in values):
+    found = [_number(item) for item in text.split(",")] if text is not None else []
+    if not all(low <= value <= high for value in found):
         unit = view_of(scene).unit_name
-        raise refused("--at", text, f"numbers from {low:g} to {high:g} ({unit}) with commas between them")
-    return tuple(sorted(set(values)))
+        raise refused(option, text, f"numbers from {low:g} to {high:g} ({unit}) with commas between them")
+    return tuple(sorted(set(found)))
 
 
 def _number(text: str) -> float:

@@ -113,7 +113,12 @@ def expressed(assembly: Assembly) -> Expressions:
         relays=tuple(assembly.relays),
         resting=resting,
         resets={
-            k: packed.scaled([to.get(s, s.symbol) / s.scale for s in assembly.states])
+            k: ca.vertcat(
+                *(
+                    packed.scaled([to[s] / s.scale]) if s in to else x
+                    for s, x in zip(assembly.states, ca.vertsplit(packed.state), strict=True)
+                )
+            )
             for k, to in assembly.resets.items()
         },
         rest_state=packed.scaled([s.rest / s.scale for s in assembly.states]),

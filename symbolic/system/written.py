@@ -75,6 +75,10 @@ class Written:
         The name of the line that vanishes, where the system has an unknown: the last of x0..
     values : dict of str to int
         Names p0.. of the parameters that occur, with their indices.
+    resets : dict of str to tuple of str
+        By the line max(s, 0) of a wall, which a motion stays before, the names of the states after an impact.
+    impacts : dict of str to int
+        Indices of the walls' switches, by these lines.
     """
 
     lines: tuple[str, ...]
@@ -82,6 +86,8 @@ class Written:
     outputs: tuple[str, ...]
     constraint: str | None
     values: dict[str, int]
+    resets: dict[str, tuple[str, ...]]
+    impacts: dict[str, int]
 
 
 def written(e: Expressions) -> Written:
@@ -100,26 +106,30 @@ def written(e: Expressions) -> Written:
     Raises
     ------
     ValueError
-        For a system with several unknowns, impacts, sliders or relays, one that is condensed, one whose rows
+        For a system with several unknowns, sliders or relays, one that is condensed, one whose rows
         are not linear in the rates, and for operations that the text does not have.
     """
     if (m := e.algebraic.numel()) > 1:
         raise ValueError(
             f"the system has {m} unknowns beside its states; with more than one it is not written as text"
         )
-    if e.resets:
-        raise ValueError("the system has impacts; they are not written as text")
+    if e.resets and m:
+        raise ValueError("the system has impacts and an unknown beside its states; it is not written as text")
     if e.sliders or e.relays:
         raise ValueError("the system has sliders or relays; they are not written as text")
     n = e.state.numel()
     rates, constraint = _explicit(e, n)
     outputs, x = ca.substitute(e.outputs, e.rate, rates), ca.vertcat(e.state, e.algebraic)
     names = [[f"x{i}" for i in range(n + m)], ["t"], [f"p{i}" for i in range(e.parameter.numel())]]
-    found = _Lines(ca.Function("text", [x, e.phase, e.parameter], [rates, outputs, constraint]), names)
-    first, second, third = (tuple(each) for each in found.results)
-    used = set(re.findall(r"\bp\d+\b", " ".join((*found.lines, *first, *second))))
+    walls = ca.vertcat(ca.SX(0, 1), *(e.switches[k] for k in e.resets))
+    wanted = [rates, outputs, constraint, walls, *e.resets.values()]
+    found = _Lines(ca.Function("text", [x, e.phase, e.parameter], wanted), names)
+    first, second, third, fourth, *after = (tuple(each) for each in found.results)
+    guards = [found.line("max", name, "0.0") for name in fourth]
+    used = set(re.findall(r"\bp\d+\b", " ".join((*found.lines, *first, *second, *sum(after, ())))))
     values = {name: i for i, name in enumerate(names[2]) if name in used}
-    return Written(tuple(found.lines), first, second, third[0] if m else None, values)
+    resets, impacts = dict(zip(guards, after, strict=True)), dict(zip(guards, e.resets, strict=True))
+    return Written(tuple(found.lines), first, second, third[0] if m else None, values, resets, impacts)
 
 
 def _explicit(e: Expressions, n: int) -> tuple[ca.SX, ca.SX]:
@@ -168,19 +178,19 @@ class _Lines:
     def _written(self, operation: int, of: list[str]) -> str:
         """The name of an operation's result."""
         if operation in CALLED:
-            return self._line(CALLED[operation], *of)
+            return self.line(CALLED[operation], *of)
         if operation in INFIX:
-            return self._line(of[0], INFIX[operation], of[1])
+            return self.line(of[0], INFIX[operation], of[1])
         if operation not in COMPOSED:
             raise ValueError(
                 f"the equations have an operation ({_name(operation)}) that the text does not have"
             )
         before: list[str] = []
         for terms in COMPOSED[operation](*of):
-            before.append(self._line(*(term.format(*before) for term in terms)))
+            before.append(self.line(*(term.format(*before) for term in terms)))
         return before[-1]
 
-    def _line(self, *terms: str) -> str:
+    def line(self, *terms: str) -> str:
         """The name of a line, one and the same for equal ones."""
         if terms not in self.known:
             self.known[terms] = f"v{len(self.lines)}"

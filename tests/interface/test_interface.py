@@ -23,7 +23,7 @@ CHANGED = {
     "periodic": {
         *("_Pieces", "NativeSteps", "Motion", "_Oscillating", "_Border", "_Pair", "_Grazing", "_Peak"),
         *("Work", "_Known", "Execution", "Run", "Continuation", "ReturnMap", "Transient", "Start"),
-        *("Foresight", "_Way", "_Ranges", "March", "Draft"),
+        *("Foresight", "_Way", "_Ranges", "March", "Draft", "Tiling"),
     },
 }
 """The dataclasses that change as they are used: those of all others are values."""

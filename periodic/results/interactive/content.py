@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -25,9 +26,12 @@ MOST_POINTS = 600
 """Points that a page holds; special points are kept in any case."""
 
 
-def content(branch: Branch, units: Units, system: System | None = None) -> dict[str, Any]:
+def content(
+    branch: Branch, units: Units, system: System | None = None, notes: Mapping[Point, str] | None = None
+) -> dict[str, Any]:
     """Return all that the page is made of."""
-    points = [branch.points[k] for k in kept(branch)]
+    noted = notes or {}
+    points = [branch.points[k] for k in kept(branch, noted)]
     signals = Signals(branch, system)
     values = np.array([signals.values(p) for p in points])
     shown = Shown(quantities(branch.layout), units)
@@ -45,18 +49,20 @@ def content(branch: Branch, units: Units, system: System | None = None) -> dict[
         "parts": PIECES,
         "stop": str(branch.stop),
         "border": second_of(branch) is not None,
-        "points": [_said(p, across, heights) for p in points],
+        "points": [_said(p, across, heights) | {"note": noted.get(p, "")} for p in points],
         "curves": heights.curves(branch, across) if len(points) == len(branch) else None,
         "orbits": packed(orbits),
         "drawing": drawing(sketch_of(system), points, places, orbits, quantities(branch.layout), system),
     }
 
 
-def kept(branch: Branch) -> list[int]:
-    """Return which points are shown: all, or special ones and every k-th of the others."""
+def kept(branch: Branch, notes: Collection[Point] = ()) -> list[int]:
+    """Return which points are shown: all, or special ones, those with notes and every k-th of the others."""
     every = -(-len(branch) // MOST_POINTS)
     last = len(branch) - 1
-    return [k for k, p in enumerate(branch.points) if k % every == 0 or k == last or p.label.value]
+    return [
+        k for k, p in enumerate(branch.points) if k % every == 0 or k == last or p.label.value or p in notes
+    ]
 
 
 class Signals:

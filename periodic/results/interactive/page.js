@@ -34,6 +34,9 @@ function heights() {
   return data.points.map(p => p.heights[k]);
 }
 
+// What stands at a special point; one with a note, as of what is proven, has a tick.
+function written(p) { return `${p.label}${p.note ? " ✓" : ""}`.trim(); }
+
 // Which texts are written: those that are not too near to another one. Axes are longer than what is drawn on them.
 function apart(places, x, y) {
   const span = values => 1.25 * (Math.max(...values) - Math.min(...values)) || 1;
@@ -54,15 +57,16 @@ function drawBranch() {
     line: { color: colour("--one"), width: 2.4, shape: data.curves ? "linear" : "spline", smoothing: 0.7, dash: s.stable ? "solid" : "dash" } }));
   traces.push({ x, y, mode: "markers", marker: { size: 14, color: "rgba(0,0,0,0)" },
     hovertemplate: "%{x:.6g}, %{y:.5g}<extra></extra>" });
-  const special = data.points.map((p, k) => k).filter(k => data.points[k].label)
+  const special = data.points.map((p, k) => k).filter(k => written(data.points[k]))
     .filter(k => !data.points[k].label.startsWith("peak of ") || data.points[k].label === "peak of " + q.name);
   traces.push({ x: special.map(k => x[k]), y: special.map(k => y[k]), mode: "markers+text",
-    text: special.map(k => plain(data.points[k].label)), textposition: "top center", cliponaxis: false,
-    textfont: { color: colour("--mark") }, marker: { size: 8, color: colour("--mark") }, hoverinfo: "skip" });
+    text: special.map(k => plain(written(data.points[k]))), textposition: "top center", cliponaxis: false,
+    textfont: { color: colour("--mark") }, hoverinfo: "skip", marker: { size: special.map(k => data.points[k].note ? 11 : 8),
+      symbol: special.map(k => data.points[k].note ? "diamond" : "circle"), color: colour("--mark") } });
   traces.push({ x: [x[here]], y: [y[here]], mode: "markers", hoverinfo: "skip",
     marker: { size: 15, color: "rgba(0,0,0,0)", line: { color: colour("--ink"), width: 2.5 } } });
   const named = apart(special.map(k => [x[k], y[k]]), x, y);
-  traces[traces.length - 2].text = special.map((k, i) => named[i] ? plain(data.points[k].label) : "");
+  traces[traces.length - 2].text = special.map((k, i) => named[i] ? plain(written(data.points[k])) : "");
   const height = titled({ name: q.said, unit: q.unit });
   Plotly.react("branch", traces, frame(titled(data.parameter), height, { dragmode: false }), config);
 }
@@ -110,6 +114,7 @@ function tell() {
     p.stable ? "stable" : "unstable"];
   if (!p.equilibrium && largest !== null) said.push(`largest multiplier ${largest.toPrecision(5)}`);
   if (p.label) { const mark = document.createElement("b"); mark.textContent = `${p.label}  `; find("said").append(mark); }
+  if (p.note) said.push(`✓ ${p.note}`);
   find("said").append(said.join(" · "));
 }
 

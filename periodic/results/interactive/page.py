@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ from periodic.results.interactive.content import content
 from periodic.results.interactive.library import write
 from periodic.results.interactive.mapped import map_content
 from periodic.results.plots.units import Units
+from periodic.results.point import Point
 from periodic.system import System, check_system
 
 if TYPE_CHECKING:
@@ -24,6 +26,7 @@ def page(
     system: System | None = None,
     title: str = "",
     units: Units | None = None,
+    notes: Mapping[Point, str] | None = None,
 ) -> Path:
     """Write a branch to one HTML file in which its orbits can be looked at.
 
@@ -47,6 +50,9 @@ def page(
         What stands above it.
     units : dict, optional
         Units by names, as for `plot`: ``{"speed": "rev/min", "x": "um"}``.
+    notes : dict of Point to str, optional
+        What else is said of points of the branch, as "proven, stable" of what `proved` has proven: these are
+        marked with a tick and what is said stands beside their numbers.
 
     Returns
     -------
@@ -57,7 +63,7 @@ def page(
     ------
     ValueError
         For a branch without points or of another system, a map of more parameters, a name that does not end
-        in .html, a title that is no text, and units of what the branch has not.
+        in .html, a title that is no text, units and notes of what the branch has not.
     ModuleNotFoundError
         Without plotly or jinja2: ``pip install 'orbitrace[html]'``.
     OSError
@@ -74,6 +80,14 @@ def page(
         raise ValueError(f"the branch has no points to show; it ended with: {branch.stop}")
     if system is not None:
         branch[0].orbit.expressed_in(layout_of(system), "branch")
-    return write(
-        "page", file, title or f"Branch over {branch.parameter}", content(branch, units or {}, system)
-    )
+    _check_notes(branch, notes or {})
+    shown = content(branch, units or {}, system, notes)
+    return write("page", file, title or f"Branch over {branch.parameter}", shown)
+
+
+def _check_notes(branch: Branch, notes: Mapping[Point, str]) -> None:
+    for point, said in notes.items():
+        if point not in branch.points:
+            raise ValueError(f"notes has {point!r}; it must be a point of the branch")
+        if not isinstance(said, str):
+            raise ValueError(f"the note of {point!r} is {said!r}; it must be a text")

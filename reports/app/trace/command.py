@@ -19,6 +19,7 @@ from ..options import (
     STOPPED_EARLY,
     Axis,
     Changes,
+    Html,
     Out,
     Own,
     Source,
@@ -75,9 +76,6 @@ Sweep = Annotated[
     typer.Option(
         "--sweep", help="Also integrate in time, up and down; the picture shows where that settles."
     ),
-]
-Html = Annotated[
-    bool, typer.Option("--html", help="Also write branch.html, a page that shows the orbit pointed at.")
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print what branch.json holds, and nothing else.")]
 

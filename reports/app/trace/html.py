@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,7 @@ from symbolic.scenes.errors import InputError
 from symbolic.scenes.schema import Scene
 
 if TYPE_CHECKING:
-    from periodic import Branch
+    from periodic import Branch, Point
 
 
 def check_html() -> None:
@@ -20,8 +21,8 @@ def check_html() -> None:
         raise InputError("--html", f"needs the package {lacking[0]}", f"{EXTRA} installs it")
 
 
-def write_page(path: Path, scene: Scene, branch: Branch) -> None:
-    """Write the page of a branch."""
+def write_page(path: Path, scene: Scene, branch: Branch, notes: Mapping[Point, str] | None = None) -> None:
+    """Write the page of a branch, with notes beside points of it."""
     import periodic as per
     from symbolic.scenes.building import build
 
@@ -34,5 +35,5 @@ def write_page(path: Path, scene: Scene, branch: Branch) -> None:
         units[view.parameter] = (view.unit_name, view.unit)
     # A page is written under a name that ends in .html.
     place = path.with_suffix(".html")
-    page = per.page(branch, place, system=build(scene), title=scene.title, units=units)
+    page = per.page(branch, place, system=build(scene), title=scene.title, units=units, notes=notes)
     page.replace(path)

@@ -1,4 +1,4 @@
-"""The report on proofs: one section for each scene, and one for each free oscillation."""
+"""The report on proofs: scenes, free oscillations, stretches of branches, and what it costs."""
 
 from __future__ import annotations
 
@@ -7,13 +7,16 @@ from pathlib import Path
 from typing import Any
 
 from reports.studies.pages.page import Page, Sections
+from reports.studies.proof.cost import COSTS
 from reports.studies.proof.cycles import CYCLES
 from reports.studies.proof.scenes import SCENES
+from reports.studies.proof.stretches import STRETCHES
 
 
 def _summary(kept: Sections) -> Mapping[str, Any]:
     """Count what is proven, and compare estimates with it."""
-    rows = [row for each in kept.values() for row in each.rows]
+    rows = [row for each in kept.values() for row in each.rows if "high" not in row]
+    ranges = [row for each in kept.values() for row in each.rows if "high" in row]
     proven = [row for row in rows if row["proven"]]
     return {
         "asked": len(rows),
@@ -22,6 +25,9 @@ def _summary(kept: Sections) -> Mapping[str, Any]:
         "accepted": sum(row["accepted"] for row in proven),
         "widest": max((row["radius"] for row in proven), default=0.0),
         "slowest": max((row["seconds"] for row in proven), default=0.0),
+        "stretches": len(ranges),
+        "whole": sum(row["proven"] for row in ranges),
+        "ranges_accepted": sum(row["accepted"] for row in ranges),
         "worst": max((row["distance"] / row["estimate"] for row in proven), default=0.0),
     }
 
@@ -29,6 +35,6 @@ def _summary(kept: Sections) -> Mapping[str, Any]:
 REPORT = Page(
     name="proof",
     folder=Path(__file__).parent,
-    sections={each.key: each.section for each in (*SCENES, *CYCLES)},
+    sections={each.key: each.section for each in (*SCENES, *CYCLES, *STRETCHES, *COSTS)},
     context=_summary,
 )

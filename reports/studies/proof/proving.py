@@ -28,22 +28,30 @@ def proven(system: CompiledSystem, asked: Iterable[Asked], tell: Tell) -> Found:
     return Found(numbers={"proven": sum(each["proven"] for each in rows)}, rows=rows)
 
 
-def row(system: CompiledSystem, point: per.Point, parameter: str | None) -> dict[str, Any]:
-    """Prove a point, check the certificate, and return what came of it."""
+def row(
+    system: CompiledSystem,
+    point: per.Point,
+    parameter: str | None,
+    between: tuple[float, float] | None = None,
+) -> dict[str, Any]:
+    """Prove a point, or a stretch through it, check the certificate, and return what came of it."""
     begun = time.process_time()
-    proof = per.proved(system, point, parameter)
+    proof = per.proved(system, point, parameter, between)
     seconds = time.process_time() - begun
     bounds = {name: proof.peak_to_peak(name) for name in list(proof.minimum)[:1]}
-    accepted, checked = _checked(proof) if proof else (False, 0.0)
+    accepted, checked = _checked(proof) if proof.certificate else (False, 0.0)
     return {
-        "label": point.label.value if parameter else "",
+        "label": point.label.value if parameter and between is None else "",
         "place": point.parameter,
         "proven": bool(proof),
-        "says": proof.says or proof.reason,
+        "says": proof.reason or proof.says,
         "stable": proof.stable,
+        "largest": max((abs(disc.centre) for disc in proof.multipliers), default=None),
         "pieces": len(proof.certificate.get("pieces", ())),
+        "ranges": len(proof.certificate.get("tiles", ())),
         "radius": proof.radius if proof else 0.0,
-        "distance": proof.distance if proof else 0.0,
+        "widest": proof.radius if proof.certificate else 0.0,
+        "distance": proof.distance if proof and between is None else 0.0,
         "estimate": point.error.orbit,
         "peak": bounds,
         "accepted": accepted,
@@ -76,6 +84,7 @@ def shown(rows: Iterable[Mapping[str, Any]]) -> list[list[str]]:
             f"{each['radius']:.0e}" if each["proven"] else "",
             f"{each['distance']:.1e}" if each["proven"] else "",
             f"{each['estimate']:.1e}",
+            "" if each["largest"] is None else f"{each['largest']:.2g}",
             f"{each['seconds']:.1f}",
             f"{each['checked']:.1f}" if each["proven"] else "",
         ]

@@ -116,6 +116,13 @@ SCENES = (
         at=(314.0,),
         words="Oil damps the journal's motion so fast that a turn would take thousands of steps.",
     ),
-    Scene(key="impact-oscillator", parameter="Omega", range=(0.9, 0.95), at=(0.9,)),
+    Scene(
+        key="impact-oscillator",
+        parameter="A",
+        range=(1.0, 0.5),
+        at=(0.9, 0.6),
+        words="Impacts on a rigid wall, with Newton's coefficient of restitution.",
+    ),
+    Scene(key="jenkins-damper", parameter="Omega", range=(0.5, 0.55), at=(0.5,)),
 )
 """In the order of the page."""

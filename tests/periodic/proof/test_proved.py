@@ -7,6 +7,7 @@ import json
 import re
 import subprocess
 import sys
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -187,6 +188,96 @@ def test_the_disc_of_1990() -> None:
     assert proof.certificate["equations"]["constraint"]
 
 
+def test_impacts() -> None:
+    """Assert that an oscillator that strikes a rigid wall is proven, and no motion that passes the wall."""
+    system = sym.scene("impact-oscillator")
+    point = per.trace(system, "A", (0.8, 1.0), start=1.0)[0]
+    proof = per.proved(system, point)
+    agrees(proof, point)
+    assert len(proof.certificate["pieces"]) == 2
+    for disc in proof.multipliers:
+        assert np.abs(point.multipliers - disc.centre).min() < 1e-7
+    given = copy.deepcopy(proof.certificate)
+    (wall,) = given["equations"]["resets"]
+    given["pieces"][0]["sides"][wall] = -1
+    with pytest.raises(check.NotProvedError, match="a motion is behind a wall"):
+        check.Orbit(given)
+    given = copy.deepcopy(proof.certificate)
+    given["equations"]["lines"].append(given["equations"]["lines"][-1].replace(wall, "again"))
+    given["pieces"][0]["until"] = "again"
+    for piece in given["pieces"]:
+        piece["sides"]["again"] = 1
+    with pytest.raises(check.NotProvedError, match="an impact is left out"):
+        check.Orbit(given)
+    given = copy.deepcopy(proof.certificate)
+    given["equations"]["resets"][wall][0] = given["equations"]["resets"][wall][1]
+    with pytest.raises(check.NotProvedError, match="an impact moves its own wall"):
+        check.Orbit(given)
+
+
+def accepted(given: dict[str, Any], path: Path) -> bool:
+    """Whether the checker accepts a certificate, given a digest of its own."""
+    path.write_text(json.dumps({**given, "digest": check.digest(given)}), "utf-8")
+    return check.main(str(path)) == 0
+
+
+def test_a_stretch(tmp_path: Path) -> None:
+    """Assert that a sheet has no fold in a range, for the checker too, which lets no gap or jump pass."""
+    system, path = sym.scene("duffing"), tmp_path / "proof.json"
+    low = duffing().at(Omega=2.0)[2]
+    proof = per.proved(system, low, "Omega", (1.9, 2.1))
+    assert proof and proof.parameter == (1.9, 2.1) and proof.stable is not False
+    assert "one branch without a fold" in proof.says
+    proof.save(path)
+    assert checked(path) == (0, f"proved: {proof.says}\n")
+    given = proof.certificate
+    tiles = given["tiles"]
+    assert accepted(given, path) and len(tiles) > 2
+    assert not accepted({**given, "tiles": [tiles[0], *tiles[2:]]}, path)
+    moved = copy.deepcopy(tiles[1])
+    moved["nodes"][0]["centre"][0] = "0/1"
+    assert not accepted({**given, "tiles": [tiles[0], moved, *tiles[2:]]}, path)
+    other = {**tiles[0], "equations": given["equations"]}
+    assert not accepted({**given, "tiles": [other, *tiles[1:]]}, path)
+    one = {**given, **tiles[0], "claim": "orbit"}
+    assert not accepted(one, path)
+
+
+def test_a_stretch_of_motions_with_events() -> None:
+    """Assert a range in which teeth part and meet, for the unstable motion between two stable ones."""
+    point = gear().at(Omega=0.7)[1]
+    proof = per.proved(sym.scene("gear-pair"), point, "Omega", (0.6995, 0.7005))
+    assert proof, proof.reason
+    assert all(len(tile["pieces"]) == 3 for tile in proof.certificate["tiles"])
+
+
+def test_a_stretch_ends_before_a_fold() -> None:
+    """Assert that what is proven ends less than a hundredth of the range before the fold, and says so."""
+    fold = duffing().labelled(per.Label.FOLD)[1].parameter
+    point = duffing().at(Omega=1.44)[1]
+    proof = per.proved(sym.scene("duffing"), point, "Omega", (1.438, 1.4405))
+    assert not proof and proof.certificate
+    low, high = proof.parameter or (0.0, 0.0)
+    assert fold < low < fold + 2.5e-5 and high == 1.4405
+    assert proof.reason.startswith(f"proven from {low:.10g} to 1.4405 only; below {low:.10g}: ")
+
+
+def test_rest_is_no_fold(tmp_path: Path) -> None:
+    """Assert that linearised equations whose only solution is rest make no fold of an orbit."""
+    given = copy.deepcopy(per.proved(sym.scene("duffing"), duffing().at(Omega=2.0)[2]).certificate)
+    (name,) = [p for p, said in given["names"]["values"].items() if said == "Omega"]
+    value = given["equations"]["values"].pop(name)
+    exact = str(Fraction(float(value)))
+    for node in given["nodes"]:
+        node["centre"] += [exact if "/" in exact else f"{exact}/1", "0/1", "0/1"]
+        node["radius"] += ["1/1000000000000000000000000"] * 3
+        node["radius"] = ["1/1000000000000000"] * 2 + node["radius"][2:]
+    given |= {"unknown": [name], "claim": "fold", "claims": {"outputs": {}}}
+    given["anchors"] = [[name, 0, given["nodes"][0]["centre"][2]]]
+    with pytest.raises(check.NotProvedError, match="nothing moves in the linearised equations"):
+        check.Orbit(given).verify()
+
+
 def roessler(t: float, y: np.ndarray) -> list[float]:
     """The rates of his equations."""
     return [-y[1] - y[2], y[0] + 0.2 * y[1], 0.2 + y[2] * (y[0] - 5.7)]
@@ -227,7 +318,7 @@ def test_multipliers_that_are_not_known(monkeypatch: pytest.MonkeyPatch) -> None
     def unknown(_: object) -> None:
         raise check.NotProvedError("the multipliers are too far apart")
 
-    monkeypatch.setattr(check, "upright", unknown)
+    monkeypatch.setattr(check.Orbit, "multipliers", unknown)
     proof = per.proved(sym.scene("duffing"), duffing().at(Omega=2.0)[0])
     assert proof and proof.stable is None and not proof.multipliers
     assert proof.says.endswith("one periodic orbit, and one only")
@@ -267,10 +358,10 @@ def test_not_decided_beside_a_grazing() -> None:
 
 def test_not_decided_for_want_of_text() -> None:
     """Assert the reasons of systems whose equations have no text, and that they have no certificate."""
-    system = sym.scene("impact-oscillator")
-    proof = per.proved(system, per.trace(system, "Omega", (0.9, 0.95))[0])
-    assert proof.reason == "the system has impacts; they are not written as text"
-    with pytest.raises(ValueError, match="there is no certificate: the system has impacts"):
+    system = sym.scene("jenkins-damper")
+    proof = per.proved(system, per.trace(system, "Omega", (0.5, 0.55))[0])
+    assert proof.reason == "the system has sliders or relays; they are not written as text"
+    with pytest.raises(ValueError, match="there is no certificate: the system has sliders"):
         proof.save("nowhere.json")
     with pytest.raises(ValueError, match="output is 'y'; it must be one that has bounds, x"):
         stop().peak_to_peak("y")
@@ -282,13 +373,16 @@ def test_not_decided_for_want_of_text() -> None:
         ("orbit", None, "what is a str; it must be an Orbit or a Point"),
         ("point", "omega", "parameter is 'omega'; it must be one of "),
         ("point", "Omega", "parameter is given; what must then be a point LP or PD of its branch"),
+        ("stretch", None, "between is given; parameter must then say of what"),
+        ("stretch", "Omega", "between is 5, 6; it must hold the point's Omega, "),
     ],
 )
 def test_refused(what: str, parameter: str | None, sentence: str) -> None:
     """Assert what is said of bad input."""
-    given: Any = duffing()[0] if what == "point" else "orbit"
+    given: Any = "orbit" if what == "orbit" else duffing()[0]
+    between = (5.0, 6.0) if what == "stretch" else None
     with pytest.raises(ValueError, match=re.escape(sentence)):
-        per.proved(sym.scene("duffing"), given, parameter)
+        per.proved(sym.scene("duffing"), given, parameter, between)
 
 
 def checked(path: Path) -> tuple[int, str]:
@@ -317,9 +411,9 @@ def test_no_more_is_said_than_is_shown() -> None:
     del given["claims"]["multipliers"]
     orbit = check.Orbit(given)
     orbit.verify()
-    assert "stable" not in orbit.says()
+    assert "stable" not in check.says(given, [orbit])
     lines = given["equations"]["lines"]
-    lines[-1:] = ["w0 = sign(x0, 0)", "w1 = x0 + w0", "w2 = max(w1, 0)", lines[-1]]
+    lines[-1:] = ["w0 = sign(x0)", "w1 = x0 + w0", "w2 = max(w1, 0)", lines[-1]]
     for piece in given["pieces"]:
         piece["sides"] |= {"w0": 1, "w2": 1}
     given["pieces"][0]["until"] = "w2"
@@ -366,9 +460,11 @@ def falsified(given: dict[str, Any], rng: np.random.Generator) -> dict[str, Any]
     elif way == 4:  # an output that goes further than is said, or not so far
         both = new["claims"]["outputs"][rng.choice(list(new["claims"]["outputs"]))]
         side = int(rng.integers(2))
-        inner, outer = map(check.ratio, both[side])
+        k, place, *ends = both[side]
+        inner, outer = map(check.ratio, ends)
         wide = outer - inner
-        both[side] = [str(inner - wide), str(inner)] if rng.integers(2) else [str(outer), str(outer + wide)]
+        ends = [inner - wide, inner] if rng.integers(2) else [outer, outer + wide]
+        both[side] = [k, place, *map(str, ends)]
     elif way == 5:
         new["claims"]["stable"] = not new["claims"]["stable"]
     elif way == 6:  # events that are not

@@ -29,8 +29,8 @@ def test_certificates(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
 
 def test_not_decided(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Assert the exit code, and the reason, of a scene whose equations have no text."""
-    assert main(["prove", "impact-oscillator", "--at", "0.9", "--out", str(tmp_path / "out")]) == 3
-    assert "not decided: the system has impacts; they are not written as text" in capsys.readouterr().out
+    assert main(["prove", "jenkins-damper", "--at", "0.5", "--out", str(tmp_path / "out")]) == 3
+    assert "not decided: the system has sliders or relays; they are not" in capsys.readouterr().out
     assert not list((tmp_path / "out").glob("proof-*.json"))
 
 
@@ -59,7 +59,12 @@ def test_no_such_points(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [
-        ([], '--at is ""; it must be at least one value, or --folds must be given'),
+        ([], '--at is ""; it must be at least one value, or --folds or --between must be given'),
+        (["--between", "1"], '--between is "1"; it must be two values with a comma between them'),
+        (
+            ["--between", "1,x"],
+            '--between is "1,x"; it must be numbers from 0.3 to 3 (rad/s) with commas between them',
+        ),
         (["--at", "7"], '--at is "7"; it must be numbers from 0.3 to 3 (rad/s) with commas between them'),
     ],
 )
@@ -92,3 +97,14 @@ def test_interrupted(
     monkeypatch.setattr("periodic.proved", interrupted)
     assert main(["prove", "stop", "--at", "1.1", "--out", str(tmp_path / "out")]) == 130
     assert capsys.readouterr().err == "orbitrace: interrupted; nothing was saved\n"
+
+
+def test_a_stretch_and_a_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Assert that a range without a fold is proven, and what is proven of points stands on the page."""
+    out = tmp_path / "out"
+    given = ["prove", "duffing", "--at", "2.5", "--between", "2.4,2.6", "--html", "--out", str(out)]
+    assert main(given) == 0
+    said = capsys.readouterr().out
+    assert "stretch at 2.4 to 2.6: for each Omega from 2.4 to 2.6 in boxes" in said
+    page = (out / "branch.html").read_text("utf-8")
+    assert page.count('"note":"proven, stable"') == 1
