@@ -52,7 +52,7 @@ def split(a, level):
 def of(kind, *operands):
     """An operation on numbers, on series in time, or on Duals of them."""
     f, *partials = RULES[kind]
-    level = max(getattr(a, "level", 0) for a in operands)
+    level = max([a.level for a in operands if type(a) is Dual], default=0)
     if not level:
         return f(*operands)
     (values, slopes), found = zip(*(split(a, level) for a in operands)), {}
@@ -144,7 +144,11 @@ class Problem:
             self.compared[name] = frozenset(operands)
         if kinds[0] in ("less", "sign") or self.jumping & {*operands}:
             self.jumping.add(name)
-        self.lines.append((name, kinds[0], [a if a in self.needs else arb(a) for a in operands]))
+        known = [self.values[a] if a in self.values else a if a in self.needs else arb(a) for a in operands]
+        if kinds[0] in RULES and not any(isinstance(a, str) for a in known):
+            self.values[name] = of(kinds[0], *known)
+        else:
+            self.lines.append((name, kinds[0], known))
 
     def at(self, y, s, sides):
         """Every value of the text at y; `?name` is the difference that a branch compares with 0."""
@@ -233,13 +237,13 @@ class Step:
             room = [2 * abs(t).upper() + r for t, r in zip(tail, room)]
         raise NotProvedError("the motion could not be enclosed during a step")
 
-    def end(self, y):
-        """Where motions from y, boxes within those of the step, are at its end: by the mean value theorem."""
-        middle = [arb(a.mid()) for a in y]
+    def ends(self, *boxes):
+        """Where motions from boxes within that of the step are at its end: by the mean value theorem."""
+        middle = [arb(a.mid()) for a in boxes[0]]
         both = zip(taylor(self.problem, middle, self.s, self.sides, self.order - 1), self.later)
         ends = [value([*(nth(a, k) for k in range(self.order)), nth(b, self.order)], self.h) for a, b in both]
-        moved = self.derivative * matrix(len(y), 1, lambda i, _: y[i] - middle[i])
-        return [a + moved[i, 0] for i, a in enumerate(ends)]
+        moved = (self.derivative * matrix(len(y), 1, lambda i, _: y[i] - middle[i]) for y in boxes)
+        return [[a + m[i, 0] for i, a in enumerate(ends)] for m in moved]
 
     def polynomials(self):
         """By name of every value its coefficients along the motions, the last one for the smallest remainder."""
@@ -299,7 +303,7 @@ class Orbit:
                 h, edge = ratio(text), edge if s == 0 else None
                 show(h > 0, "a step has no length")
                 step = Step(own, box, arb(s), arb(h), order, piece["sides"])
-                point, box, whole, s = step.end(point), step.end(box), step.derivative * whole, s + h
+                (point, box), whole, s = step.ends(point, box), step.derivative * whole, s + h
                 self.steps.append((step, edge, until if s == 1 else None))
             self.flows.append((point, box, whole, (piece, after) if after and s == 1 else None))
         return until

@@ -160,7 +160,7 @@ class March:
             taken = Step(self.problem, list(y), arb(exact(self.s)), arb(exact(h)), order, self.sides)
         except NotProvedError:
             return None
-        ends = taken.end(y)
+        (ends,) = taken.ends(y)
         if order == 1:
             return taken, ends
         small = all(float(e.rad()) <= self.fine.accurate * max(abs(float(e)), SMALL) for e in ends)

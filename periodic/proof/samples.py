@@ -51,7 +51,8 @@ def evaluated(problem: Problem, values: Mapping[str, float], state: Array, phase
     The difference that a branch compares with 0 has the branch's name with a question mark before it.
     """
     at: dict[str, Array] = {f"x{i}": state[:, i] for i in range(state.shape[1])}
-    at |= {"t": phase} | {name: np.full(len(phase), value) for name, value in values.items()}
+    known = {name: float(value) for name, value in problem.values.items()} | dict(values)
+    at |= {"t": phase} | {name: np.full(len(phase), value) for name, value in known.items()}
     with np.errstate(all="ignore"):
         for name, kind, operands in problem.lines:
             a = [at[o] if isinstance(o, str) else np.full(len(phase), float(o)) for o in operands]

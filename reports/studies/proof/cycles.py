@@ -43,18 +43,22 @@ class Cycle:
         points = []
         for state, period in self.near:
             tell(f"period {period:g}")
-            name, value = self.parameter
-            branch = per.trace(
-                system,
-                name,
-                (value, value * 1.001),
-                guess=self._sampled(system, state, period),
-                determined={"omega": per.PhaseCondition()},
-                watch=per.Watch(peaks={}),
-                control=per.ArclengthControl(max_points=2),
-            )
-            points.append((branch[0], None))
+            points.append((self.traced(system, state, period), None))
         return proven(system, points, tell)
+
+    def traced(self, system: sym.CompiledSystem, state: tuple[float, ...], period: float) -> per.Point:
+        """The engine's cycle, from a state near it."""
+        name, value = self.parameter
+        branch = per.trace(
+            system,
+            name,
+            (value, value * 1.001),
+            guess=self._sampled(system, state, period),
+            determined={"omega": per.PhaseCondition()},
+            watch=per.Watch(peaks={}),
+            control=per.ArclengthControl(max_points=2),
+        )
+        return branch[0]
 
     def _sampled(self, system: sym.CompiledSystem, state: tuple[float, ...], period: float) -> per.Orbit:
         """The cycle by shooting, its first component held."""
@@ -85,7 +89,8 @@ def _van_der_pol(_: float, y: np.ndarray) -> list[float]:
     return [y[1], (1 - y[0] ** 2) * y[1] - y[0]]
 
 
-def _lorenz(_: float, y: np.ndarray) -> list[float]:
+def lorenz(_: float, y: np.ndarray) -> list[float]:
+    """Rates of his equations."""
     return [10 * (y[1] - y[0]), 28 * y[0] - y[1] - y[0] * y[2], y[0] * y[1] - 8 / 3 * y[2]]
 
 
@@ -158,7 +163,7 @@ CYCLES = (
             states={"x": 0.0, "y": 0.0, "z": 0.0},
             parameters={"rho": 28.0},
         ),
-        rates=_lorenz,
+        rates=lorenz,
         parameter=("rho", 28.0),
         near=LORENZ,
     ),
