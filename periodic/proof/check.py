@@ -115,7 +115,9 @@ class Problem:
         self.n, self.period = len(text["rates"]), 2 * arb.pi() * int(given["turns"])
         self.first = self.n + bool(self.constraint)
         states = [f"x{i}" for i in range(self.first)]
-        self.needs = {name: {name} for name in (*self.values, *self.unknown, *states, "t")}
+        every = (*self.values, *self.unknown, *states, "t")
+        self.needs = {name: {name} for name in every}
+        show(len(self.needs) == len(every), "a name stands for two things")
         self.lines, self.compared, self.kinds, self.jumping = [], {}, {}, set()
         for line in text["lines"]:
             self._read(line, *re.findall(r"[^\s(),=]+", line))

@@ -120,7 +120,7 @@ class Words:
     def section(self) -> Section:
         """The section of the page."""
         return Section(
-            title="Lorenz' equations: as many cycles as twenty minutes allow",
+            title="Lorenz' equations: as many cycles as ten minutes allow",
             compute=self._compute,
             context=self._context,
             template="words.md.j2",

@@ -239,6 +239,9 @@ def test_a_stretch(tmp_path: Path) -> None:
     assert not accepted({**given, "tiles": [tiles[0], moved, *tiles[2:]]}, path)
     other = {**tiles[0], "equations": given["equations"]}
     assert not accepted({**given, "tiles": [other, *tiles[1:]]}, path)
+    name = tiles[0]["anchors"][-1][0]
+    constant = {**given["equations"], "values": {**given["equations"]["values"], name: "2.0"}}
+    assert not accepted({**given, "equations": constant}, path)
     one = {**given, **tiles[0], "claim": "orbit"}
     assert not accepted(one, path)
 

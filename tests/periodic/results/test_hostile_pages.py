@@ -78,6 +78,19 @@ def test_branch(attack: str, browser: Any, tmp_path: Path) -> None:
         check(page)
 
 
+@by_attack
+def test_notes(attack: str, browser: Any, tmp_path: Path) -> None:
+    """Assert that what is said of a point is shown letter by letter, with a tick at the point."""
+    system, branch = hostile(attack)
+    notes = {branch[-1]: attack}
+    file = per.page(branch, tmp_path / "page.html", system=system, title="notes", notes=notes)
+    with opened(browser, file) as page:
+        page.keyboard.press("End")
+        check(page)
+        assert shown(page.text_content("#said")).endswith(shown(f"✓ {attack}"))
+        assert shown(f"{attack} e ✓") in texts(page, "#branch .textpoint")
+
+
 @pytest.mark.parametrize("attack", [*ATTACKS.values(), "a\u2028\u2029';\n\r\t'b"], ids=[*ATTACKS, "lines"])
 def test_map(attack: str, browser: Any, tmp_path: Path) -> None:
     """Assert the same of a map's title, axes, numbers and units."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -84,6 +85,10 @@ def test_what_is_no_page_is_refused(branch: per.Branch, tmp_path: Path) -> None:
         per.page(nothing, tmp_path / "a.html")
     with pytest.raises(ValueError, match="^units is 3; it must give units by their names$"):
         per.page(branch, tmp_path / "a.html", units=nothing)
+    with pytest.raises(ValueError, match=r"^notes has Point\(.*; it must be a point of the branch$"):
+        per.page(branch, tmp_path / "a.html", notes={replace(branch[5]): "proven"})
+    with pytest.raises(ValueError, match=r"^the note of Point\(.* is 3; it must be a text$"):
+        per.page(branch, tmp_path / "a.html", notes={branch[5]: nothing})
     with pytest.raises(ValueError, match="^branch has 6 parameters; it must have the 12 of the system$"):
         per.page(branch, tmp_path / "a.html", system=sym.scene("gear-pair"))
 
