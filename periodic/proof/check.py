@@ -47,22 +47,21 @@ def corner(a, n):
 Dual = namedtuple("Dual", "level value slopes")
 
 def split(a, level):
-    return (a.value, a.slopes) if isinstance(a, Dual) and a.level == level else (a, {})
+    return (a.value, a.slopes) if type(a) is Dual and a.level == level else (a, {})
 
 def of(kind, *operands):
     """An operation on numbers, on series in time, or on Duals of them."""
-    f, *partials = RULES[kind]
-    level = max([a.level for a in operands if type(a) is Dual], default=0)
-    if not level:
-        return f(*operands)
-    (values, slopes), found = zip(*(split(a, level) for a in operands)), {}
+    levels = [a.level for a in operands if type(a) is Dual]
+    if not levels:
+        return RULES[kind][0](*operands)
+    (values, slopes), found = zip(*[split(a, max(levels)) for a in operands]), {}
     result = of(kind, *values)
-    for by, own in zip(partials, slopes):
+    for by, own in zip(RULES[kind][1:], slopes):
         factor = by(*values, result) if own and by else None
         for j, s in own.items():
             term = of("*", factor, s) if by else s
             found[j] = of("+", found[j], term) if j in found else term
-    return Dual(level, result, found)
+    return Dual(max(levels), result, found)
 
 def inverse(a):
     show(not nth(a, 0).contains(0), "a denominator may be 0")
