@@ -43,11 +43,11 @@ class Cycle:
         points = []
         for state, period in self.near:
             tell(f"period {period:g}")
-            points.append((self.traced(system, state, period), None))
+            points.append((self.traced(system, *self._closed(state, period)), None))
         return proven(system, points, tell)
 
     def traced(self, system: sym.CompiledSystem, state: tuple[float, ...], period: float) -> per.Point:
-        """The engine's cycle, from a state near it."""
+        """The engine's cycle, from a state on it."""
         name, value = self.parameter
         branch = per.trace(
             system,
@@ -60,8 +60,8 @@ class Cycle:
         )
         return branch[0]
 
-    def _sampled(self, system: sym.CompiledSystem, state: tuple[float, ...], period: float) -> per.Orbit:
-        """The cycle by shooting, its first component held."""
+    def _closed(self, state: tuple[float, ...], period: float) -> tuple[tuple[float, ...], float]:
+        """A state of the cycle, and its period, by shooting, the first component held."""
         first = state[0]
 
         def missed(u: np.ndarray) -> np.ndarray:
@@ -69,9 +69,13 @@ class Cycle:
             return solve_ivp(self.rates, (0, u[-1]), begin, rtol=1e-11, atol=1e-12).y[:, -1] - begin
 
         *rest, period = fsolve(missed, [*state[1:], period], xtol=1e-10)
+        return (first, *rest), period
+
+    def _sampled(self, system: sym.CompiledSystem, state: tuple[float, ...], period: float) -> per.Orbit:
+        """The cycle over time."""
         phase = np.linspace(0, 2 * np.pi, 1001)
-        times, begin = np.linspace(0, period, len(phase)), [first, *rest]
-        values = solve_ivp(self.rates, (0, period), begin, t_eval=times, rtol=1e-11, atol=1e-12).y.T
+        times = np.linspace(0, period, len(phase))
+        values = solve_ivp(self.rates, (0, period), state, t_eval=times, rtol=1e-11, atol=1e-12).y.T
         values[-1] = values[0]
         name, value = self.parameter
         parameter = {name: value, "omega": 2 * np.pi / period}

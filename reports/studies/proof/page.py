@@ -13,7 +13,7 @@ from reports.studies.proof.scenes import SCENES
 from reports.studies.proof.stretches import STRETCHES
 from reports.studies.proof.words import Words
 
-WORDS = Words(key="lorenz-words", cycle=CYCLES[-1], longest=12, seconds=600.0)
+WORDS = Words(key="lorenz-words", cycle=CYCLES[-1], longest=7)
 
 
 def _summary(kept: Sections) -> Mapping[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -109,18 +108,17 @@ def closed(word: tuple[int, ...], states: np.ndarray) -> tuple[tuple[float, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class Words:
-    """As many cycles as a time allows, the shortest words first."""
+    """Cycles of all words up to a length, the shortest first."""
 
     key: str
     cycle: Cycle
     longest: int
-    seconds: float
 
     @cached_property
     def section(self) -> Section:
         """The section of the page."""
         return Section(
-            title="Lorenz' equations: as many cycles as ten minutes allow",
+            title=f"Lorenz' equations: all cycles of at most {self.longest} turns",
             compute=self._compute,
             context=self._context,
             template="words.md.j2",
@@ -129,10 +127,7 @@ class Words:
     def _compute(self, tell: Tell) -> Found:
         states = turns()
         rows: list[dict[str, Any]] = []
-        begun = time.process_time()
         for word in words(self.longest):
-            if time.process_time() - begun > self.seconds:
-                break
             text = "".join("L" if side < 0 else "R" for side in word)
             tell(text)
             cycle = closed(word, states)
