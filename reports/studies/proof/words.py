@@ -33,6 +33,10 @@ CLOSED, ITERATIONS = 1e-8, 20
 """Last change of Newton's method, and iterations at the most."""
 
 
+FAR = 30.0
+"""Change at which it has lost its way: as far as the attractor reaches."""
+
+
 def rising(_: float, y: np.ndarray) -> float:
     """What vanishes at the section."""
     return float(y[2] - HEIGHT)
@@ -99,6 +103,8 @@ def closed(word: tuple[int, ...], states: np.ndarray) -> tuple[tuple[float, ...]
                 moved = turned(place + STEP * np.eye(2)[j])
                 matrix[2 * k : 2 * k + 2, 2 * k + j] += (moved - ends[k])[:2] / STEP
         change = np.linalg.solve(matrix, -(ends[:, :2] - np.roll(places, -1, axis=0)).ravel())
+        if not np.abs(change).max() < FAR:
+            return None
         places = places + change.reshape(length, 2)
         if np.abs(change).max() < CLOSED:
             same = (np.sign(places[:, 0]) == word).all()
