@@ -215,7 +215,7 @@ def value(coefficients, h):
 class Step:
     """A step of length h from boxes y at s: its motions, their derivatives, and all values along them."""
     def __init__(self, problem, y, s, h, order, sides):
-        self.problem, self.s, self.h, self.order, self.sides = problem, s, h, order, sides
+        self.problem, self.box, self.s, self.h, self.order, self.sides = problem, y, s, h, order, sides
         self.along, self.during, d = arb(0).union(h), s + arb(0).union(h), problem.size
         self.motion = taylor(problem, y, s, sides, order - 1)
         self.later = self._enclosed()
@@ -241,6 +241,7 @@ class Step:
     def ends(self, *boxes):
         """Where motions from boxes within that of the step are at its end: by the mean value theorem."""
         middle = [arb(a.mid()) for a in boxes[0]]
+        show(all(a.contains(m) for a, m in zip(self.box, middle)), "a point is beside its box")
         both = zip(taylor(self.problem, middle, self.s, self.sides, self.order - 1), self.later)
         ends = [value([*(nth(a, k) for k in range(self.order)), nth(b, self.order)], self.h) for a, b in both]
         moved = (self.derivative * matrix(len(y), 1, lambda i, _: y[i] - middle[i]) for y in boxes)
@@ -282,6 +283,7 @@ class Orbit:
         ranges = [(name, *ends) for name, _, ends in self.anchors if len(ends) == 2]
         show(len(ranges) == (given["claim"] == "stretch"), "there is no range, or more than one")
         self.over, self.begin, self.end = ranges[0] if ranges else (None, None, None)
+        show(not ranges or self.over in self.problem.unknown, "a range is of no unknown value")
         show(not self.problem.events or all(box[-1] > 0 for box in self.boxes), "a piece takes no time")
         self.flows, self.steps, self.places, self.balls, edge = [], [], [], None, None
         for k, after in enumerate([*self.pieces[1:], None]):
@@ -451,7 +453,9 @@ def says(given, orbits):
     kind = {True: ", stable", False: ", unstable", None: ""}[kinds.pop() if len(kinds) == 1 else None]
     where = f"in boxes of half width {half:.1e} at the most there is one"
     if given["claim"] == "stretch":
-        ends = f"{names[orbits[0].over]} from {float(orbits[0].begin)!r} to {float(orbits[-1].end)!r}"
+        low, high = orbits[0].begin, orbits[-1].end
+        show(all(fmpq(*float(end).as_integer_ratio()) == end for end in (low, high)), "an end is no double")
+        ends = f"{names[orbits[0].over]} from {float(low)!r} to {float(high)!r}"
         return f"for each {ends} {where} periodic orbit, and one only{kind}; they are one branch without a fold"
     what = {"orbit": "periodic orbit", "fold": "fold", "doubling": "period doubling"}[given["claim"]]
     return "".join([f"{where} {what}, and one only", kind, *(f", {names[u]} = {c.str(25)}" for u, c in known)])

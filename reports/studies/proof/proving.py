@@ -46,7 +46,7 @@ def row(
         "proven": bool(proof),
         "says": proof.reason or proof.says,
         "stable": proof.stable,
-        "largest": max((abs(disc.centre) for disc in proof.multipliers), default=None),
+        "largest": max((abs(disc.centre) + disc.radius for disc in proof.multipliers), default=None),
         "pieces": len(proof.certificate.get("pieces", ())),
         "ranges": len(proof.certificate.get("tiles", ())),
         "radius": proof.radius if proof else 0.0,

@@ -239,6 +239,9 @@ def test_a_stretch(tmp_path: Path) -> None:
     assert not accepted({**given, "tiles": [tiles[0], moved, *tiles[2:]]}, path)
     other = {**tiles[0], "equations": given["equations"]}
     assert not accepted({**given, "tiles": [other, *tiles[1:]]}, path)
+    state = copy.deepcopy(tiles[0])
+    state["anchors"][-1][0] = "x0"
+    assert not accepted({**given, "tiles": [state]}, path)
     name = tiles[0]["anchors"][-1][0]
     constant = {**given["equations"], "values": {**given["equations"]["values"], name: "2.0"}}
     assert not accepted({**given, "equations": constant}, path)
@@ -425,6 +428,15 @@ def test_no_more_is_said_than_is_shown() -> None:
     given["claim"] = "fold"
     with pytest.raises(check.NotProvedError, match="the equations jump, and with them what must not"):
         check.Orbit(given)
+
+
+def test_a_step_takes_no_point_beside_its_box() -> None:
+    """Assert that the mean value theorem is not used about a point where the derivatives are not known."""
+    orbit = check.Orbit(stop().certificate)
+    step, box = orbit.steps[0][0], orbit.boxes[0]
+    step.ends(orbit.centres[0], box)
+    with pytest.raises(check.NotProvedError, match="a point is beside its box"):
+        step.ends([a + 1 for a in orbit.centres[0]], box)
 
 
 def test_a_forced_orbit_has_no_multiplier_that_is_left_out() -> None:
