@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 import periodic as per
 import symbolic as sym
 from reports.studies.pages.content import Found, Kept, Section, Tell
+from reports.studies.proof.cycles import from_cycle
 from reports.studies.proof.proving import row, shown
 
 Made = Callable[[int], tuple[sym.CompiledSystem, per.Point]]
@@ -69,24 +70,11 @@ def van_der_pol(mu: int) -> tuple[sym.CompiledSystem, per.Point]:
     )
     times, states = np.array(settled.t_events)[0], np.array(settled.y_events)[0]
     period = times[-1] - times[-2]
-    phase = np.linspace(0, 2 * np.pi, 4001)
-    times = np.linspace(0, period, len(phase))
+    times = np.linspace(0, period, 4001)
     cycle = solve_ivp(
         rates, (0, period), states[-2], method="Radau", t_eval=times, rtol=1e-10, atol=1e-12
     ).y.T
-    cycle[-1] = cycle[0]
-    given = {"mu": float(mu), "omega": 2 * np.pi / period}
-    orbit = per.sampled(phase, cycle, np.zeros((len(phase), 0)), given, system=system)
-    branch = per.trace(
-        system,
-        "mu",
-        (mu, 1.001 * mu),
-        guess=orbit,
-        determined={"omega": per.PhaseCondition()},
-        watch=per.Watch(peaks={}),
-        control=per.ArclengthControl(max_points=2),
-    )
-    return system, branch[0]
+    return system, from_cycle(system, ("mu", float(mu)), cycle, period)
 
 
 def chain(states: int) -> tuple[sym.CompiledSystem, per.Point]:

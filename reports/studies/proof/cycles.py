@@ -19,6 +19,26 @@ from reports.studies.proof.proving import proven, shown
 Rates = Callable[[float, np.ndarray], Sequence[float]]
 
 
+def from_cycle(
+    system: sym.CompiledSystem, parameter: tuple[str, float], values: np.ndarray, period: float
+) -> per.Point:
+    """Return the engine's cycle at a parameter's value, from states at equal times over the period."""
+    phase, values = np.linspace(0, 2 * np.pi, len(values)), values.copy()
+    values[-1] = values[0]
+    name, value = parameter
+    given = {name: value, "omega": 2 * np.pi / period}
+    branch = per.trace(
+        system,
+        name,
+        (value, value * 1.001),
+        guess=per.sampled(phase, values, np.zeros((len(phase), 0)), given, system=system),
+        determined={"omega": per.PhaseCondition()},
+        watch=per.Watch(peaks={}),
+        control=per.ArclengthControl(max_points=2),
+    )
+    return branch[0]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Cycle:
     """Cycles of equations with a parameter, each by a state near it and its period."""
@@ -48,17 +68,9 @@ class Cycle:
 
     def traced(self, system: sym.CompiledSystem, state: tuple[float, ...], period: float) -> per.Point:
         """The engine's cycle, from a state on it."""
-        name, value = self.parameter
-        branch = per.trace(
-            system,
-            name,
-            (value, value * 1.001),
-            guess=self._sampled(system, state, period),
-            determined={"omega": per.PhaseCondition()},
-            watch=per.Watch(peaks={}),
-            control=per.ArclengthControl(max_points=2),
-        )
-        return branch[0]
+        times = np.linspace(0, period, 1001)
+        values = solve_ivp(self.rates, (0, period), state, t_eval=times, rtol=1e-11, atol=1e-12).y.T
+        return from_cycle(system, self.parameter, values, period)
 
     def _closed(self, state: tuple[float, ...], period: float) -> tuple[tuple[float, ...], float]:
         """A state of the cycle, and its period, by shooting, the first component held."""
@@ -70,16 +82,6 @@ class Cycle:
 
         *rest, period = fsolve(missed, [*state[1:], period], xtol=1e-10)
         return (first, *rest), period
-
-    def _sampled(self, system: sym.CompiledSystem, state: tuple[float, ...], period: float) -> per.Orbit:
-        """The cycle over time."""
-        phase = np.linspace(0, 2 * np.pi, 1001)
-        times = np.linspace(0, period, len(phase))
-        values = solve_ivp(self.rates, (0, period), state, t_eval=times, rtol=1e-11, atol=1e-12).y.T
-        values[-1] = values[0]
-        name, value = self.parameter
-        parameter = {name: value, "omega": 2 * np.pi / period}
-        return per.sampled(phase, values, np.zeros((len(phase), 0)), parameter, system=system)
 
     def _context(self, kept: Kept) -> Mapping[str, Any]:
         return {"words": self.words, "axis": self.parameter[0], "table": shown(kept.rows)}
