@@ -1,7 +1,7 @@
 """Periodic orbits: collocation, continuation, stability, special points. Knows only the `System` protocol.
 
 The names stand in `__init__.pyi`; each is imported when it is first asked for. What everybody calls stands
-here, the rest in namespaces: `plots`, `maps`, `extend`.
+here, the rest in namespaces: `plots`, `maps`, `decisions`, `extend`.
 """
 
 import sys

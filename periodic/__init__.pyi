@@ -1,6 +1,6 @@
 """Periodic orbits: collocation, continuation, stability, special points. Knows only the `System` protocol."""
 
-from . import extend, maps, plots
+from . import decisions, extend, maps, plots
 from .bifurcations.hopf import eigenvalues, hopf, normal_mode
 from .bifurcations.label import Label
 from .bifurcations.switching import SwitchError, branched, doubled
@@ -19,6 +19,12 @@ from .correction.condition import Given
 from .correction.newton import NewtonSettings
 from .correction.problem import Problem
 from .correction.tolerance import Accuracy, Tolerance
+from .decisions.fitting.fit import fit
+from .decisions.fitting.measured import Measured, MeasuredQuantity, recorded
+from .decisions.modes import mode_branch
+from .decisions.optimising.optimise import optimise
+from .decisions.responses.response import Response
+from .decisions.scattering.scatter import scatter
 from .equilibrium.equilibrium import Equilibrium
 from .equilibrium.normalform import first_lyapunov
 from .events.eventnodes import KinkSettings
@@ -71,6 +77,8 @@ __all__ = [
     "Label",
     "Level",
     "Maximum",
+    "Measured",
+    "MeasuredQuantity",
     "Minimum",
     "Multiplier",
     "NewtonSettings",
@@ -83,6 +91,7 @@ __all__ = [
     "Problem",
     "Proof",
     "Reason",
+    "Response",
     "ResumeError",
     "Scheme",
     "Shooting",
@@ -96,6 +105,7 @@ __all__ = [
     "Watch",
     "branched",
     "continuation",
+    "decisions",
     "design_map",
     "doubled",
     "eigenvalues",
@@ -103,20 +113,25 @@ __all__ = [
     "extend",
     "extrema",
     "first_lyapunov",
+    "fit",
     "hopf",
     "maps",
     "mean",
+    "mode_branch",
     "motion",
     "normal_mode",
+    "optimise",
     "outputs",
     "page",
     "plot",
     "plots",
     "points_at",
     "proved",
+    "recorded",
     "recovered",
     "recovery",
     "sampled",
+    "scatter",
     "sensitivities",
     "torus",
     "trace",

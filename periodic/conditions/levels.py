@@ -7,14 +7,14 @@ from typing import cast
 
 import numpy as np
 
-from periodic.conditions.functionals import Functional, Smooth, apart
+from periodic.conditions.functionals import Functional, Smooth, Value, apart
 from periodic.conditions.variations import variations, weighted
 from periodic.correction.condition import Condition, Given, SideCondition
 from periodic.linear.variation import Tangent
 from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import System
+from periodic.system import System, index_of
 
 GRADIENT_STEP = 1e-4
 """Step, in peak-to-peak values, of differences of a functional's derivative."""
@@ -38,8 +38,8 @@ class Level(Condition):
     ----------
     functional : Functional
         f; as a condition it must have a derivative.
-    value : float
-        Its value in SI units.
+    value : float or str
+        Its value in SI units; or the name of the parameter that it is equal to.
 
     Raises
     ------
@@ -48,11 +48,17 @@ class Level(Condition):
     """
 
     functional: Functional
-    value: float
+    value: float | str
 
     def __post_init__(self) -> None:
-        if not (isinstance(self.value, int | float | np.number) and np.isfinite(self.value)):
+        finite = isinstance(self.value, int | float | np.number) and np.isfinite(self.value)
+        if not (finite or (isinstance(self.value, str) and self.value)):
             raise ValueError(f"value of a Level is {self.value!r}; it must be a finite number")
+
+    def check(self, system: System, parameter: Array) -> None:
+        """Refuse a system without the parameter that is named."""
+        if isinstance(self.value, str):
+            index_of(system, self.value)
 
     def at(self, origin: Orbit, given: Given) -> SideCondition:
         """Return the side condition near an orbit."""
@@ -62,11 +68,14 @@ class Level(Condition):
 @dataclass(frozen=True)
 class _Level:
     functional: Smooth
-    value: float
+    value: float | str
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return f - value and its gradient."""
         row = self.functional.linearise(system, orbit, free)
+        if isinstance(self.value, str):
+            row += Value(self.value).linearise(system, orbit, free).scaled(-1.0)
+            return Row(apart(self.functional, row.value, 0.0), row.nodes, row.outer, row.stages)
         return Row(apart(self.functional, row.value, self.value), row.nodes, row.outer, row.stages)
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -12,6 +14,7 @@ from periodic.conditions.functionals import Functional
 from periodic.conditions.levels import smooth
 from periodic.conditions.variations import equations
 from periodic.correction.condition import Condition, side_conditions
+from periodic.correction.newton import moved
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import as_read_by
 from periodic.orbit.orbit import LEAST_SPAN, Orbit
@@ -61,26 +64,63 @@ def sensitivities(
         its equations or what is determined.
     """
     named("functionals", functionals, "functionals")
-    named("determined", determined or {}, "conditions")
-    orbit = as_read_by(system, orbit)
-    polynomial(orbit)
-    names = [p.name for p in system.parameters]
-    own = tuple(index_of(system, name) for name in determined or {})
-    others = tuple(k for k in range(len(names)) if k not in own)
-    free, first = (*own, *others), len(orbit.phases) + len(own)
-    closing = side_conditions(list((determined or {}).values()), own, orbit)
-    rows = [condition.linearise(system, orbit, free) for condition in closing]
-    rows += [_held(orbit, first + i, len(free)) for i in range(len(others))]
-    right = np.zeros((1 + len(rows), 1 + len(others)))
-    right[0, 0] = 1.0
-    right[1 + len(own) :, 1:] = np.eye(len(others))
-    step, *ways = equations(system, orbit, free).solve(rows, right)
-    _check_met(orbit, step, [names[k] for k in own])
-    found = {}
-    for label, functional in functionals.items():
-        slope = smooth(functional).linearise(system, orbit, free)
-        found[label] = {names[k]: way.rate_of(slope) for k, way in zip(others, ways, strict=True)}
-    return found
+    found = Changes.of(system, orbit, determined)
+    return {label: found.rates(functional) for label, functional in functionals.items()}
+
+
+@dataclass(frozen=True)
+class Changes:
+    """How an orbit changes with each parameter that is not determined, its equations still met.
+
+    Parameters
+    ----------
+    system : System
+        The equations.
+    orbit : Orbit
+        The orbit, in the system's scales.
+    free : tuple of int
+        Indices of all parameters, those that are determined first.
+    ways : mapping of str to Increment
+        The orbit's change per SI unit of a parameter, by its name.
+    """
+
+    system: System
+    orbit: Orbit
+    free: tuple[int, ...]
+    ways: Mapping[str, Increment]
+
+    @classmethod
+    def of(cls, system: System, orbit: Orbit, determined: Mapping[str, Condition] | None = None) -> Self:
+        """Return the changes of an orbit; arguments and refusals are those of `sensitivities`."""
+        named("determined", determined or {}, "conditions")
+        orbit = as_read_by(system, orbit)
+        polynomial(orbit)
+        names = [p.name for p in system.parameters]
+        own = tuple(index_of(system, name) for name in determined or {})
+        others = tuple(k for k in range(len(names)) if k not in own)
+        free, first = (*own, *others), len(orbit.phases) + len(own)
+        closing = side_conditions(list((determined or {}).values()), own, orbit)
+        rows = [condition.linearise(system, orbit, free) for condition in closing]
+        rows += [_held(orbit, first + i, len(free)) for i in range(len(others))]
+        right = np.zeros((1 + len(rows), 1 + len(others)))
+        right[0, 0] = 1.0
+        right[1 + len(own) :, 1:] = np.eye(len(others))
+        step, *ways = equations(system, orbit, free).solve(rows, right)
+        _check_met(orbit, step, [names[k] for k in own])
+        return cls(system, orbit, free, {names[k]: way for k, way in zip(others, ways, strict=True)})
+
+    def rates(self, functional: Functional) -> dict[str, float]:
+        """Return the derivatives of a functional in each parameter, SI. Raises ValueError if it has none."""
+        slope = smooth(functional).linearise(self.system, self.orbit, self.free)
+        return {name: way.rate_of(slope) for name, way in self.ways.items()}
+
+    def predicted(self, values: Mapping[str, float]) -> Orbit:
+        """Return the orbit moved along its changes to other parameters (SI), to first order in them."""
+        found = self.orbit
+        for name, value in values.items():
+            step = value - float(self.orbit.parameter[index_of(self.system, name)])
+            found = moved(self.system, self.free, found, self.ways[name], step)
+        return found
 
 
 def _check_met(orbit: Orbit, step: Increment, determined: Sequence[str]) -> None:

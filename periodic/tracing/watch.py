@@ -86,6 +86,8 @@ class Watch:
         for name, event in self.events.items():
             if not isinstance(event, Level):
                 raise ValueError(f"event {name} is {event!r}; it must be a Level(functional, value)")
+            if isinstance(event.value, str):
+                raise ValueError(f"event {name} is {event!r}; its value must be a number")
             if name in known:
                 raise ValueError(f"events has {name!r}, which is a label; it must be another name")
         for name, count in self.stop.items():
@@ -143,7 +145,8 @@ class Watch:
             In this order.
         """
         events = [
-            level_test(event.functional, event.value, Label.USER, n) for n, event in self.events.items()
+            level_test(event.functional, float(event.value), Label.USER, n)
+            for n, event in self.events.items()
         ]
         limits = [
             level_test(Value(name), value + side * slack(value), Label.END, f"{word} limit of {name}")

@@ -9,6 +9,7 @@ from symbolic.checks import refusal, typed
 from symbolic.equations import kinks
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.expressions import Expressions, expressed
+from symbolic.equations.freemotion import Silence, let_go
 from symbolic.equations.model import Model, Part
 from symbolic.equations.variables import SwitchInfo, Variable
 from symbolic.interrupts import interruptible
@@ -51,13 +52,19 @@ def compile(  # noqa: A001
     CompilerError
         For "c" without a working compiler.
     """
-    assembly, back_end = Assembly(), chosen(kernels)
     if not isinstance(model, Model | Part):
         raise refusal("model", model, "a Model or a Part, as the sum of symbolic.Mass(x, 1.0) and others is")
-    assembly.lay(model.parts if isinstance(model, Model) else (model,))
-    assembly.close(typed("condense", condense, bool, "True or False"))
+    return _compiled(Recipe(model, chosen(kernels), typed("condense", condense, bool, "True or False")))
+
+
+def _compiled(recipe: Recipe) -> CompiledSystem:
+    assembly = Assembly(Silence()) if recipe.free else Assembly()
+    assembly.lay(recipe.parts)
+    assembly.close(recipe.condense)
+    if recipe.free:
+        let_go(assembly)
     kinks.find(assembly)
-    system = _system(assembly, Recipe(model, back_end, condense))
+    system = _system(assembly, recipe)
     for variable in (*system.states, *system.algebraics):
         if variable.name in [p.name for p in system.parameters]:
             raise ValueError(
@@ -68,19 +75,28 @@ def compile(  # noqa: A001
 
 @dataclass(frozen=True)
 class Recipe:
-    """What a system is made from. It is pickled in the system's place: its parts, and functions by name."""
+    """What a system is made from. It is pickled in the system's place: its parts, and functions by name.
+
+    free: whether it is let go, without excitation (`symbolic.equations.freemotion`).
+    """
 
     model: Model | Part
     kernels: Kernels
     condense: bool
+    free: bool = False
 
     def __call__(self) -> CompiledSystem:
-        return compile(self.model, self.kernels, condense=self.condense)
+        return _compiled(self)
 
     @property
     def whole(self) -> Recipe:
         """The same with all states of its structures."""
         return replace(self, condense=False)
+
+    @property
+    def let_go(self) -> Recipe:
+        """The same without excitation, with all states of its structures."""
+        return replace(self, condense=False, free=True)
 
     @property
     def parts(self) -> tuple[Part, ...]:
@@ -102,6 +118,11 @@ class Valued:
     def whole(self) -> Valued:
         """The same with all states of its structures."""
         return replace(self, recipe=self.recipe.whole)
+
+    @property
+    def let_go(self) -> Valued:
+        """The same without excitation, with all states of its structures."""
+        return replace(self, recipe=self.recipe.let_go)
 
     @property
     def parts(self) -> tuple[Part, ...]:

@@ -179,6 +179,22 @@ class CompiledSystem(Evaluated):
             return str(error)
         return found
 
+    def let_go(self) -> CompiledSystem:
+        """Return the system without excitation, its vibration kept up: see `periodic.system.Releasable`.
+
+        Raises
+        ------
+        ValueError
+            For a system that was not compiled from a model.
+        """
+        recipe = getattr(self.recipe, "let_go", None)
+        if recipe is None:
+            raise ValueError(
+                "the system was not compiled from a model, and has no masses; it must be for its modes"
+            )
+        found: CompiledSystem = recipe()
+        return found
+
     @cached_property
     def slides(self) -> dict[int, tuple[int, int]]:
         """Of each jump along which motions can slide, and of sliders, the switches at which that ends."""

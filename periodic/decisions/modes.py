@@ -1,0 +1,332 @@
+"""Nonlinear modes with damping: frequency, damping ratio and dissipated energy over the amplitude.
+
+Free vibrations of a damped system decay. With the force xi M q' on all inertia they are periodic, at one xi
+for each amplitude (extended periodic motion concept),
+
+    M q'' - xi M q' + f(q', q) = 0,   D = xi / (2 omega),
+
+and near resonance the forced motion of that amplitude is the same. Of conservative systems xi is 0: their
+backbones.
+
+References
+----------
+M. Krack, Nonlinear modal analysis of nonconservative systems: extension of the periodic motion concept,
+Computers and Structures 154 (2015) 59-71.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, cast
+
+import numpy as np
+
+from periodic.checks import named, number, one_of, shown, whole
+from periodic.conditions.functionals import Amplitude, Component, Functional, Value, mean, output_index
+from periodic.conditions.levels import Level
+from periodic.conditions.phase import PhaseCondition
+from periodic.correction.condition import Condition
+from periodic.correction.discretisation import Discretisation
+from periodic.correction.meanequilibrium import resting
+from periodic.correction.tolerance import Accuracy, Tolerance
+from periodic.equilibrium.linearise import rows_at
+from periodic.orbit.construction import constant
+from periodic.orbit.layout import layout_of
+from periodic.orbit.mesh import uniform
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array, Scheme
+from periodic.results.branch import Branch
+from periodic.system import System, check_system, check_value, index_of
+from periodic.system.free import DAMPING, KINETIC, SIZE, Releasable
+from periodic.tracing.steps.stepsize import ArclengthControl
+from periodic.tracing.trace import trace
+from periodic.tracing.watch import Watch
+
+NTST = 24
+"""Intervals of the first guess."""
+
+RATIO, LOSS = "damping ratio", "energy per period"
+"""Names of the columns."""
+
+
+@dataclass(frozen=True)
+class FreeVibration(PhaseCondition):
+    """The phase condition of free vibrations kept up by xi.
+
+    Besides a shift of phase a change of amplitude is no disturbance: the branch itself leads there. The two
+    multipliers nearest 1 are theirs.
+    """
+
+    trivial: ClassVar[int] = 2
+
+
+@dataclass(frozen=True)
+class DampingRatio:
+    """D = xi / (2 omega) of an orbit of a system that was let go."""
+
+    def __call__(self, system: System, orbit: Orbit) -> float:
+        """Return the ratio."""
+        return Value(DAMPING)(system, orbit) / (2 * orbit.omega)
+
+
+@dataclass(frozen=True)
+class EnergyPerPeriod:
+    """What the system dissipates over a period (J), and xi puts in."""
+
+    def __call__(self, system: System, orbit: Orbit) -> float:
+        """Return the energy (J)."""
+        return Value(DAMPING)(system, orbit) * mean(KINETIC)(system, orbit) * orbit.period
+
+
+def mode_branch(
+    system: System,
+    output: str,
+    amplitudes: tuple[float, float],
+    *,
+    which: int = 0,
+    values: Mapping[str, float] | None = None,
+    at: float | Sequence[float] = (),
+    tol: float | Tolerance = Accuracy.STANDARD,
+    guess: Orbit | None = None,
+    method: Discretisation | None = None,
+    control: ArclengthControl | None = None,
+    columns: Mapping[str, Functional] | None = None,
+) -> Branch:
+    """Trace a nonlinear mode with its damping over the amplitude.
+
+    Parameters
+    ----------
+    system : System
+        A compiled model, whatever excites it: here nothing does.
+    output : str
+        Output whose first harmonic is the amplitude.
+    amplitudes : tuple of float
+        Range of the amplitude (SI), positive; the branch begins at the first.
+    which : int
+        The linear mode that it begins at, counted from 0 at the lowest frequency.
+    values : mapping of str to float, optional
+        Parameters (SI) by name.
+    at : float or sequence of float
+        Amplitudes that get points of their own.
+    tol
+        As in `trace`.
+    guess : Orbit, optional
+        An orbit of the system that was let go, as a point of another mode branch has it, to begin with.
+    method, control
+        As in `trace`.
+    columns : mapping of str to functional, optional
+        Further functionals kept at each point.
+
+    Returns
+    -------
+    Branch
+        Over the parameter "amplitude"; the frequency is a parameter of its orbits, xi (1/s) another. Its
+        columns "damping ratio" and "energy per period" (J) are xi / (2 omega) and what is dissipated.
+
+    Raises
+    ------
+    ValueError
+        In one sentence, for a system that is no compiled model, an unknown output, amplitudes that are no
+        range of positive numbers, and a mode that there is not.
+    """
+    check_system(system)
+    if not hasattr(system, "let_go"):
+        raise ValueError("system has no masses that are known; it must be one that symbolic.compile returned")
+    free = cast(Releasable, system).let_go()
+    output_index(free, output)
+    low, high = _amplitudes(amplitudes)
+    frequency = layout_of(free).frequency
+    if len(frequency) != 1:
+        raise ValueError(
+            f"the frequency is a product of {', '.join(frequency)}; it must be one parameter for a mode"
+        )
+    named("values", values or {}, "numbers")
+    first = guess or linear_mode(free, output, low, frequency[0], whole("which", which, 0), values or {})
+    determined: dict[str, Condition] = {
+        frequency[0]: FreeVibration(),
+        DAMPING: Level(Amplitude(output), SIZE),
+    }
+    return trace(
+        free,
+        SIZE,
+        (low, high),
+        start=low,
+        at=at,
+        tol=tol,
+        guess=first,
+        determined=determined,
+        method=method,
+        control=control,
+        watch=Watch(columns={RATIO: DampingRatio(), LOSS: EnergyPerPeriod(), **(columns or {})}, peaks={}),
+    )
+
+
+def shape(system: System, orbit: Orbit, order: float = 1.0) -> dict[str, complex]:
+    """Return the modal shape of an orbit: the complex amplitude of each coordinate in a harmonic.
+
+    Parameters
+    ----------
+    system : System
+        The system that was let go or, if it has the orbit's states, the one that was traced.
+    orbit : Orbit
+        The orbit.
+    order : float
+        The harmonic.
+
+    Returns
+    -------
+    dict of str to complex
+        a - i b of q = a cos(order tau) + b sin(order tau) (SI), by the names of the outputs that are states.
+    """
+    states = {state.name for state in system.states}
+    found = {}
+    for name in (o.name for o in system.outputs if o.name in states):
+        cosine, sine = (Component(name, order, phase)(system, orbit) for phase in (0.0, np.pi / 2))
+        found[name] = complex(cosine, -sine)
+    return found
+
+
+def synthesised(
+    system: System, modes: Branch, output: str, forces: Mapping[str, complex]
+) -> dict[str, Array]:
+    """Return the response to harmonic forces near a resonance, as the mode alone gives it.
+
+    With the amplitude a, omega and D of each point, phi the shape per unit of a and m the modal mass, forces
+    Re(f exp(i Omega t)) need
+
+        |omega^2 - Omega^2 + 2 i D omega Omega| m a = |phi^H f|.
+
+    Parameters
+    ----------
+    system : System
+        The system of the branch.
+    modes : Branch
+        What `mode_branch` returned.
+    output : str
+        The output that its amplitude is of.
+    forces : mapping of str to complex
+        Amplitudes f (N) by the outputs, coordinates of the model, on which they act.
+
+    Returns
+    -------
+    dict of str to Array
+        "amplitude" (SI), and "below" and "above", the frequencies (rad/s) at which the response has it, below
+        and above resonance; NaN where there is none.
+
+    Raises
+    ------
+    ValueError
+        For an output that is none.
+    """
+    free = cast(Releasable, system).let_go()
+    rows = []
+    for point in modes:
+        orbit, a = point.orbit, point.parameter
+        omega, ratio = orbit.omega, DampingRatio()(free, orbit)
+        form = shape(free, orbit)
+        for name in (output, *forces):
+            one_of("output", name, form)
+        along = sum(np.conj(form[name] / form[output]) * force for name, force in forces.items())
+        mass = 2 * mean(KINETIC)(free, orbit) / (omega * a) ** 2
+        middle = 1 - 2 * ratio**2
+        left = middle**2 - 1 + (abs(along) / (mass * a * omega**2)) ** 2
+        root = np.sqrt(left) if left >= 0 else np.nan
+        ends = [omega * np.sqrt(w) if (w := middle + sign * root) >= 0 else np.nan for sign in (-1.0, 1.0)]
+        rows.append((a, *ends))
+    return dict(zip(("amplitude", "below", "above"), np.array(rows).reshape(-1, 3).T, strict=True))
+
+
+def linear_mode(
+    free: System, output: str, amplitude: float, frequency: str, which: int, values: Mapping[str, float]
+) -> Orbit:
+    """Return the motion of a linear mode about rest, of an amplitude: a guess.
+
+    Parameters
+    ----------
+    free : System
+        A system that was let go.
+    output : str
+        The output whose first harmonic has the amplitude (SI).
+    amplitude : float
+        The amplitude.
+    frequency : str
+        Name of the parameter that is the frequency.
+    which : int
+        The mode.
+    values : mapping of str to float
+        Parameters (SI).
+
+    Returns
+    -------
+    Orbit
+        The guess.
+
+    Raises
+    ------
+    ValueError
+        For a mode that there is not, and one in which the output does not move.
+    """
+    parameter = np.array(free.nominal, dtype=float)
+    for name, value in values.items():
+        index = index_of(free, name)
+        if not np.isfinite(number(f"value of {name}", value)):
+            raise ValueError(f"value of {name} is {value!r}; it must be a finite number")
+        check_value(free.parameters[index], value)
+        parameter[index] = value
+    state, algebraic = free.rest(parameter)
+    rest = constant(uniform(Scheme(), NTST), state, algebraic, parameter, layout_of(free))
+    rest = resting(free, rest) or rest
+    rows = rows_at(free, rest, ())
+    eigenvalues, vectors = np.linalg.eig(rows.jacobian)
+    order = [k for k in np.argsort(eigenvalues.imag, kind="stable") if eigenvalues[k].imag > 0]
+    if which >= len(order):
+        raise ValueError(f"which is {which}; the system at rest has {len(order)} modes that vibrate")
+    value, vector = eigenvalues[order[which]], vectors[:, order[which]]
+    omega = float(parameter[index_of(free, frequency)])
+    parameter[index_of(free, frequency)] = omega * value.imag
+    parameter[index_of(free, DAMPING)] = -2 * omega * value.real
+    parameter[index_of(free, SIZE)] = amplitude
+    unknowns = rows.unknowns @ vector
+    # with tau = omega t scaled to one turn a period, velocities d/dtau are those of the eigenvector over Im
+    turned = _turning(free, rest, vector, unknowns, parameter, value.imag)
+    size = Amplitude(output)(free, turned(1.0))
+    if not size > 1e-9 * float(np.abs(vector).max()):
+        raise ValueError(
+            f"output is {output!r}, which does not move in mode {which}; it must be one that does"
+        )
+    return turned(amplitude / size)
+
+
+def _turning(free: System, rest: Orbit, vector: Any, unknowns: Any, parameter: Array, turns: float) -> Any:
+    """Return rest + size Re(exp(i tau) v) as a function of the size, velocities per turn of the mode."""
+    velocities = _velocities(free)
+    scaled = np.where(velocities, vector / turns, vector)
+
+    def orbit(size: float) -> Orbit:
+        def wave(v: Any, tau: Array) -> Array:
+            return size * (np.exp(1j * tau)[..., None] * v).real
+
+        nodes = rest.nodes[0] + wave(scaled, rest.mesh.nodes(rest.phases))
+        stages = rest.nodes[0] + wave(scaled, rest.stage_phases)
+        algebraic = rest.algebraic[0, 0] + wave(unknowns, rest.stage_phases)
+        return replace(rest, nodes=nodes, stages=stages, algebraic=algebraic, parameter=parameter)
+
+    return orbit
+
+
+def _velocities(system: System) -> Array:
+    """Which states are derivatives in tau of other states, as x' of x."""
+    names = [state.name for state in system.states]
+    return np.array([name.endswith("'") and name[:-1] in names for name in names])
+
+
+def _amplitudes(given: Any) -> tuple[float, float]:
+    if not (isinstance(given, Sequence) and len(given) == 2):
+        raise ValueError(
+            f"amplitudes is {shown(given)}; it must be two positive numbers, where the branch begins first"
+        )
+    first, last = (number("amplitude", value) for value in given)
+    if not (np.isfinite([first, last]).all() and min(first, last) > 0 and first != last):
+        raise ValueError(f"amplitudes is {shown(given)}; it must be two different positive numbers")
+    return first, last

@@ -1,0 +1,1 @@
+"""Designs whose worst is best."""

@@ -1,0 +1,1 @@
+"""What decisions are about: responses, quantities of them, and features followed to other designs."""
