@@ -43,7 +43,7 @@ AFAR = 3.0
 """Standard deviations from the data, on average, from which on a start is far from them."""
 
 COARSE = (0.1, 0.03, 0.01, 0.003, 0.001)
-"""Standard deviations that are added for such a start, one after the other, in parts of what the data span."""
+"""Standard deviations that are added for such a start, one after the other, in parts of the data's spans."""
 
 BETTER = 1e-6
 """Part of the misfit by which another sheet must be nearer for it to be taken."""

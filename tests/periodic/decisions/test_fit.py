@@ -18,7 +18,7 @@ RESPONSE = per.Response("Omega", (0.4, 2.8))
 
 
 def settled(omega: float, upper: bool, force: float = 0.5) -> complex:
-    """First harmonic of the oscillator of TRUTH, integrated from a large or a small motion until it repeats."""
+    """First harmonic of the oscillator of TRUTH, integrated from a large or small motion until it repeats."""
     k, k3, c = TRUTH.values()
 
     def rate(t: float, y: np.ndarray) -> list[float]:
@@ -116,7 +116,7 @@ def test_a_history_and_a_sensor_of_unknown_scale() -> None:
 
 
 def test_what_cannot_be_told_apart_is_said() -> None:
-    """Assert that mass, stiffness and force together are told to be of one scale, and k3 off resonance alone."""
+    """Assert that masses, stiffnesses, damping and force are told to be known but for one scale."""
     omegas, amplitudes = swept(0.0, 0)
     data = per.Measured(RESPONSE, omegas, {AMPLITUDE: amplitudes}, sigma={AMPLITUDE: 0.01})
     free = {"k": (0.5, 2.0), "m": (0.5, 2.0), "F": (0.2, 1.0), "c": (0.02, 0.4), "k3": (0.2, 3.0)}

@@ -36,7 +36,7 @@ def highest(system: sym.CompiledSystem, values: dict[str, float], bounds: tuple[
 
 
 def test_friction_damper_is_that_of_brute_force_and_scales() -> None:
-    """Assert the limit of the lowest peak against a search by traces; twice the force needs twice the limit."""
+    """Assert the limit of the lowest peak against a search by traces; twice the force needs twice of it."""
     response = per.Response("Omega", RANGE)
     once = per.optimise(damper(), LIMIT, minimise=response.highest(SWING), start={"F_slider": 0.1})
     assert once.ok
