@@ -23,6 +23,7 @@ from typing import Any, ClassVar, cast
 import numpy as np
 
 from periodic.checks import named, number, one_of, shown, whole
+from periodic.collocation.collocation import Collocation
 from periodic.conditions.functionals import Amplitude, Component, Functional, Value, mean, output_index
 from periodic.conditions.levels import Level
 from periodic.conditions.phase import PhaseCondition
@@ -30,7 +31,7 @@ from periodic.correction.condition import Condition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.meanequilibrium import resting
 from periodic.correction.tolerance import Accuracy, Tolerance
-from periodic.equilibrium.linearise import rows_at
+from periodic.equilibrium.linearise import Rows, rows_at
 from periodic.orbit.construction import constant
 from periodic.orbit.layout import layout_of
 from periodic.orbit.mesh import uniform
@@ -39,12 +40,16 @@ from periodic.orbit.scheme import Array, Scheme
 from periodic.results.branch import Branch
 from periodic.system import System, check_system, check_value, index_of
 from periodic.system.free import DAMPING, KINETIC, SIZE, Releasable
+from periodic.system.precision import MOST_ITERATIONS
 from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.trace import trace
 from periodic.tracing.watch import Watch
 
 NTST = 24
 """Intervals of the first guess."""
+
+SETTLED = 1e-10
+"""Relative change of a linear mode's frequency at which it is taken for its own."""
 
 RATIO, LOSS = "damping ratio", "energy per period"
 """Names of the columns."""
@@ -85,6 +90,7 @@ def mode_branch(
     amplitudes: tuple[float, float],
     *,
     which: int = 0,
+    frequency: str | None = None,
     values: Mapping[str, float] | None = None,
     at: float | Sequence[float] = (),
     tol: float | Tolerance = Accuracy.STANDARD,
@@ -105,6 +111,8 @@ def mode_branch(
         Range of the amplitude (SI), positive; the branch begins at the first.
     which : int
         The linear mode that it begins at, counted from 0 at the lowest frequency.
+    frequency : str, optional
+        The parameter that becomes the mode's frequency, where that is a product of several.
     values : mapping of str to float, optional
         Parameters (SI) by name.
     at : float or sequence of float
@@ -114,14 +122,15 @@ def mode_branch(
     guess : Orbit, optional
         An orbit of the system that was let go, as a point of another mode branch has it, to begin with.
     method, control
-        As in `trace`.
+        As in `trace`; by default collocation of all states, as xi is in all of the linear part.
     columns : mapping of str to functional, optional
         Further functionals kept at each point.
 
     Returns
     -------
     Branch
-        Over the parameter "amplitude"; the frequency is a parameter of its orbits, xi (1/s) another. Its
+        Over the parameter "modal amplitude"; the frequency is a parameter of its orbits, xi
+        (1/s, "modal damping") another. Its
         columns "damping ratio" and "energy per period" (J) are xi / (2 omega) and what is dissipated.
 
     Raises
@@ -136,15 +145,16 @@ def mode_branch(
     free = cast(Releasable, system).let_go()
     output_index(free, output)
     low, high = _amplitudes(amplitudes)
-    frequency = layout_of(free).frequency
-    if len(frequency) != 1:
+    known = layout_of(free).frequency
+    if frequency is None and len(known) != 1:
         raise ValueError(
-            f"the frequency is a product of {', '.join(frequency)}; it must be one parameter for a mode"
+            f"frequency is None, and that of the system is a product; it must be one of {', '.join(known)}"
         )
+    paced = known[0] if frequency is None else one_of("frequency", frequency, known)
     named("values", values or {}, "numbers")
-    first = guess or linear_mode(free, output, low, frequency[0], whole("which", which, 0), values or {})
+    first = guess or linear_mode(free, output, low, paced, whole("which", which, 0), values or {})
     determined: dict[str, Condition] = {
-        frequency[0]: FreeVibration(),
+        paced: FreeVibration(),
         DAMPING: Level(Amplitude(output), SIZE),
     }
     return trace(
@@ -156,7 +166,7 @@ def mode_branch(
         tol=tol,
         guess=first,
         determined=determined,
-        method=method,
+        method=method or Collocation(condense=False),
         control=control,
         watch=Watch(columns={RATIO: DampingRatio(), LOSS: EnergyPerPeriod(), **(columns or {})}, peaks={}),
     )
@@ -274,51 +284,48 @@ def linear_mode(
             raise ValueError(f"value of {name} is {value!r}; it must be a finite number")
         check_value(free.parameters[index], value)
         parameter[index] = value
-    state, algebraic = free.rest(parameter)
-    rest = constant(uniform(Scheme(), NTST), state, algebraic, parameter, layout_of(free))
-    rest = resting(free, rest) or rest
-    rows = rows_at(free, rest, ())
-    eigenvalues, vectors = np.linalg.eig(rows.jacobian)
-    order = [k for k in np.argsort(eigenvalues.imag, kind="stable") if eigenvalues[k].imag > 0]
-    if which >= len(order):
-        raise ValueError(f"which is {which}; the system at rest has {len(order)} modes that vibrate")
-    value, vector = eigenvalues[order[which]], vectors[:, order[which]]
-    omega = float(parameter[index_of(free, frequency)])
-    parameter[index_of(free, frequency)] = omega * value.imag
-    parameter[index_of(free, DAMPING)] = -2 * omega * value.real
+    paced = index_of(free, frequency)
+    for _ in range(MOST_ITERATIONS):  # a film, say, has another thickness at the mode's own speed
+        rest, rows, turn, vector = _linear(free, parameter, which)
+        parameter[paced] *= turn.imag
+        if abs(turn.imag - 1) < SETTLED:
+            break
+    omega = replace(rest, parameter=parameter).omega
+    parameter[index_of(free, DAMPING)] = -2 * omega * turn.real
     parameter[index_of(free, SIZE)] = amplitude
     unknowns = rows.unknowns @ vector
-    # with tau = omega t scaled to one turn a period, velocities d/dtau are those of the eigenvector over Im
-    turned = _turning(free, rest, vector, unknowns, parameter, value.imag)
-    size = Amplitude(output)(free, turned(1.0))
-    if not size > 1e-9 * float(np.abs(vector).max()):
-        raise ValueError(
-            f"output is {output!r}, which does not move in mode {which}; it must be one that does"
-        )
-    return turned(amplitude / size)
 
-
-def _turning(free: System, rest: Orbit, vector: Any, unknowns: Any, parameter: Array, turns: float) -> Any:
-    """Return rest + size Re(exp(i tau) v) as a function of the size, velocities per turn of the mode."""
-    velocities = _velocities(free)
-    scaled = np.where(velocities, vector / turns, vector)
-
-    def orbit(size: float) -> Orbit:
+    def turning(size: float) -> Orbit:
         def wave(v: Any, tau: Array) -> Array:
             return size * (np.exp(1j * tau)[..., None] * v).real
 
-        nodes = rest.nodes[0] + wave(scaled, rest.mesh.nodes(rest.phases))
-        stages = rest.nodes[0] + wave(scaled, rest.stage_phases)
-        algebraic = rest.algebraic[0, 0] + wave(unknowns, rest.stage_phases)
-        return replace(rest, nodes=nodes, stages=stages, algebraic=algebraic, parameter=parameter)
+        return replace(
+            rest,
+            nodes=rest.nodes[0] + wave(vector, rest.mesh.nodes(rest.phases)),
+            stages=rest.nodes[0] + wave(vector, rest.stage_phases),
+            algebraic=rest.algebraic[0, 0] + wave(unknowns, rest.stage_phases),
+            parameter=parameter,
+        )
 
-    return orbit
+    unit = Amplitude(output)(free, turning(1.0))
+    if not unit > 1e-9 * float(np.abs(vector).max()):
+        raise ValueError(
+            f"output is {output!r}, which does not move in mode {which}; it must be one that does"
+        )
+    return turning(amplitude / unit)
 
 
-def _velocities(system: System) -> Array:
-    """Which states are derivatives in tau of other states, as x' of x."""
-    names = [state.name for state in system.states]
-    return np.array([name.endswith("'") and name[:-1] in names for name in names])
+def _linear(free: System, parameter: Array, which: int) -> tuple[Orbit, Rows, complex, Any]:
+    """Rest, the linear system there, and eigenvalue (per unit of tau) and eigenvector of a mode."""
+    state, algebraic = free.rest(parameter)
+    rest = constant(uniform(Scheme(), NTST), state, algebraic, parameter.copy(), layout_of(free))
+    rest = resting(free, rest) or rest
+    rows = rows_at(free, rest, ())
+    values, vectors = np.linalg.eig(rows.jacobian)
+    order = [k for k in np.argsort(values.imag, kind="stable") if values[k].imag > 0]
+    if which >= len(order):
+        raise ValueError(f"which is {which}; the system at rest has {len(order)} modes that vibrate")
+    return rest, rows, complex(values[order[which]]), vectors[:, order[which]]
 
 
 def _amplitudes(given: Any) -> tuple[float, float]:

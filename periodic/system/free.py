@@ -6,10 +6,10 @@ from typing import Protocol
 
 from periodic.system.equations import System
 
-DAMPING = "xi"
+DAMPING = "modal damping"
 """Name of the parameter xi (1/s): inertia M brings the force xi M q' besides."""
 
-SIZE = "amplitude"
+SIZE = "modal amplitude"
 """Name of the parameter that no equation has, for a condition to compare an amplitude with."""
 
 KINETIC = "twice the kinetic energy"
@@ -20,4 +20,4 @@ class Releasable(System, Protocol):
     """A system that has masses."""
 
     def let_go(self) -> System:
-        """Return the system without excitation, with the parameters xi and amplitude and q' M q'."""
+        """Return it without excitation, with the parameters modal damping and modal amplitude."""

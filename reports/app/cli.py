@@ -18,6 +18,7 @@ from .doctor.command import doctor
 from .export.command import export
 from .linear.command import linear
 from .map.command import map_
+from .modes.command import modes
 from .options import BAD_INPUT, DONE, say
 from .parts.command import new, parts
 from .prove.command import prove
@@ -30,7 +31,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (scenes, trace, linear, prove, export, parts, new, doctor):
+for command in (scenes, trace, linear, modes, prove, export, parts, new, doctor):
     app.command()(command)
 app.command("map")(map_)
 

@@ -13,10 +13,10 @@ from symbolic.equations.assembly import Assembly
 from symbolic.equations.excitation import Excitation, Order
 from symbolic.equations.variables import Parameter
 
-DAMPING = "xi"
+DAMPING = "modal damping"
 """Name of the parameter xi (1/s)."""
 
-SIZE = "amplitude"
+SIZE = "modal amplitude"
 """Name of the parameter that a condition may compare an amplitude with; no equation has it."""
 
 KINETIC = "twice the kinetic energy"
@@ -48,7 +48,7 @@ def let_go(assembly: Assembly) -> None:
     Raises
     ------
     ValueError
-        For a model with parameters xi or amplitude of its own.
+        For a model with parameters of these names.
     """
     for name in (DAMPING, SIZE):
         if name in assembly.parameters:
