@@ -8,6 +8,7 @@ nearest sheet again, until none changes its place.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, cast
 
@@ -15,7 +16,7 @@ import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
 
 from periodic.checks import one_of, shown
-from periodic.decisions.fitting.fitted import Fitted
+from periodic.decisions.fitting.fitted import UNTOLD, Fitted
 from periodic.decisions.fitting.match import Foot, Match
 from periodic.decisions.fitting.matching import matched, sensors_of
 from periodic.decisions.fitting.measured import Measured, MeasuredQuantity
@@ -170,6 +171,7 @@ class _Search:
             match = fresh
         return Fitted(
             reason=why,
+            system=self.system,
             match=match,
             box=self.box,
             data=tuple(self.data),
@@ -180,23 +182,29 @@ class _Search:
         )
 
     def _approached(self, begin: Mapping[str, float]) -> Mapping[str, float]:
-        """Return values nearer to the data, seen with an eye that is coarse at first. Raises AbsentError."""
+        """Return values nearer to the data, seen with an eye that is coarse at first.
+
+        What such data do not tell stays near where it was, as if its range were its distribution.
+        """
         values = begin
         for part in COARSE:
             coarse = [d.loosened(part) if isinstance(d, Measured) else d for d in self.data]
-            values = self.fitted(self._matched(coarse, values)[0])[0].values
+            with suppress(AbsentError):  # with a finer eye there may be more to see
+                values = self.fitted(self._matched(coarse, values)[0], prior=1 / UNTOLD)[0].values
         return values
 
-    def fitted(self, match: Match, held: Sequence[str] = ()) -> tuple[Match, str]:
+    def fitted(self, match: Match, held: Sequence[str] = (), prior: float = 0.0) -> tuple[Match, str]:
         """Return the best match with each motion followed on its sheet, and why it is not known to be best.
 
-        Values named in `held` stay as they are.
+        Values named in `held` stay as they are; `prior` is the weight of changes, in parts of the ranges.
         """
         follow = Follow(self.box, match)
         moving = np.array([name not in held for name in self.box.names])
         begin = self.box.scaled(match.values)
         if not moving.any():
             return match, ""
+
+        inside = np.clip(begin[moving], 1e-9, 1 - 1e-9)
 
         def full(x: Array) -> Array:
             found = begin.copy()
@@ -205,14 +213,15 @@ class _Search:
 
         def residual(x: Array) -> Array:
             try:
-                return self._at(follow, full(x)).residual
+                found = self._at(follow, full(x)).residual
             except AbsentError:
-                return np.full(len(match.residual), np.nan)
+                found = np.full(len(match.residual), np.nan)
+            return np.append(found, prior * (x - inside))
 
         def slopes(x: Array) -> Array:
-            return (self._at(follow, full(x)).jacobian * self.box.widths)[:, moving]
+            found = (self._at(follow, full(x)).jacobian * self.box.widths)[:, moving]
+            return np.concatenate([found, prior * np.eye(len(x))])
 
-        inside = np.clip(begin[moving], 1e-9, 1 - 1e-9)
         solved: OptimizeResult = least_squares(
             residual,
             inside,

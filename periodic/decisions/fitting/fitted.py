@@ -5,18 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import norm, t
 
 from periodic.checks import between, one_of
+from periodic.conditions.functionals import Smooth
 from periodic.decisions.fitting.match import Foot, Match
 from periodic.decisions.fitting.measured import Measured, MeasuredQuantity
+from periodic.decisions.fitting.picture import draw
+from periodic.decisions.fitting.proposal import proposal
 from periodic.decisions.responses.box import Box
 from periodic.decisions.responses.feature import LostError
 from periodic.orbit.scheme import Array
 from periodic.results.branch import Branch
+from periodic.system import System
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 FAR = 5.0
 """Standard deviations from which on a measured point is said not to be of the model."""
@@ -47,6 +55,8 @@ class Fitted:
     ----------
     reason : str
         Why it is not known to be the best fit; empty where it is.
+    system : System
+        The equations.
     match : Match
         The model with the motions nearest to what was measured.
     box : Box
@@ -64,6 +74,7 @@ class Fitted:
     """
 
     reason: str
+    system: System
     match: Match
     box: Box
     data: tuple[Measured | MeasuredQuantity, ...]
@@ -210,31 +221,34 @@ class Fitted:
             if spread < UNTOLD:
                 break
             named = np.abs(direction) >= MENTIONED
-            step = direction * min(spread, 1.0) * self.box.widths
+            first = direction[int(np.argmax(named))]
+            step = np.sign(first) * direction * min(spread, 1.0) * self.box.widths
             found.append({n: float(s) for n, s, yes in zip(self.box.names, step, named, strict=True) if yes})
         return tuple(found)
 
-    @property
+    @cached_property
     def remarks(self) -> tuple[str, ...]:
         """What a reader should know: what is not told, values at ends of ranges, points far away."""
         said = [f"not known to be the best fit: {self.reason}"] if self.reason else []
-        for step in self.untold:
-            changes = ", ".join(f"{name} by {change:+.3g}" for name, change in step.items())
-            if len(step) == 1:
-                said.append(
-                    f"{next(iter(step))} is not determined by these data: {changes} changes nothing "
-                    f"that shows"
-                )
-            else:
-                said.append(
-                    f"{' and '.join(step)} cannot be told apart: {changes} together change nothing that shows"
-                )
+        said += [self._untold(step) for step in self.untold]
         for name, value in self.values.items():
             k = self.box.names.index(name)
             if min(value - self.box.low[k], self.box.high[k] - value) <= 1e-6 * self.box.widths[k]:
                 said.append(f"{name} is at an end of its range, {value:.6g}: a wider one may fit better")
         said += [f"{each} standard deviations from the model" for each in self._far]
         return tuple(said)
+
+    def _untold(self, step: Mapping[str, float]) -> str:
+        """What the data do not tell in a direction, and what would."""
+        changes = ", ".join(f"{name} by {change:+.3g}" for name, change in step.items())
+        if len(step) == 1:
+            said = f"{next(iter(step))} is not determined by these data: {changes} changes nothing that shows"
+        else:
+            said = f"{' and '.join(step)} cannot be told apart: {changes} together change nothing that shows"
+        both = zip(self.data, self.branches, strict=True)
+        tests = [(d, branch) for d, branch in both if isinstance(d, Measured)]
+        better = proposal(self.system, tests, step)
+        return f"{said}; {better} would tell" if better else f"{said}, nor would another amplitude or phase"
 
     @property
     def _far(self) -> list[str]:
@@ -244,6 +258,27 @@ class Fitted:
             if size > FAR:
                 found.append(f"{part} is {size:.1f}")
         return found
+
+    def plot(self, functional: Smooth | None = None) -> Axes:
+        """Plot measured points beside the model's branches, above their residuals.
+
+        Parameters
+        ----------
+        functional : functional, optional
+            What is plotted; by default what was measured first.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The upper axes.
+
+        Raises
+        ------
+        ValueError
+            For a functional of which no points were measured.
+        """
+        both = zip(self.data, self.branches, strict=True)
+        return draw(self.match, [(d, b) for d, b in both if isinstance(d, Measured)], functional)
 
     def table(self) -> str:
         """Return a line for each value: the value, its error, its 95 % interval; then the remarks.

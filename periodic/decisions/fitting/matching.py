@@ -9,6 +9,7 @@ from periodic.decisions.fitting.measured import Measured, MeasuredQuantity
 from periodic.decisions.responses.feature import Count, LostError, Way
 from periodic.decisions.responses.quantity import AbsentError
 from periodic.decisions.responses.reading import traced
+from periodic.decisions.responses.words import called
 from periodic.results.branch import Branch
 from periodic.system import System
 
@@ -30,7 +31,10 @@ def sensors_of(data: Sequence[Measured | MeasuredQuantity]) -> list[Sensors]:
         name = each.name if len(tests) == 1 else f"{each.name} {k}"
         found.append(
             tuple(
-                (f"gain of {f}, {name}" if each.gain else "", f"offset of {f}, {name}" if each.offset else "")
+                (
+                    f"gain of {called(f)}, {name}" if each.gain else "",
+                    f"offset of {called(f)}, {name}" if each.offset else "",
+                )
                 for f in each.values
             )
         )

@@ -19,6 +19,7 @@ from periodic.conditions.twoparameter.augmented import DoublingCondition, FoldCo
 from periodic.conditions.twoparameter.grazing import GrazingCondition
 from periodic.correction.condition import Condition, Given
 from periodic.decisions.responses.feature import Feature, Way
+from periodic.decisions.responses.words import called
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.results.branch import Branch
@@ -139,7 +140,7 @@ class Extreme(Comparable):
     places = ()
 
     def __str__(self) -> str:
-        return f"{'highest' if self.sign > 0 else 'lowest'} {self.functional}"
+        return f"{'highest' if self.sign > 0 else 'lowest'} {called(self.functional)}"
 
     @property
     def peaks(self) -> tuple[Smooth, ...]:
@@ -191,7 +192,7 @@ class SpecialPoint(Comparable):
             raise ValueError(f"label is {self.label!r}; it must be one of {', '.join(CONDITIONS)}")
 
     def __str__(self) -> str:
-        what = self.response.parameter if self.functional is None else self.functional
+        what = self.response.parameter if self.functional is None else called(self.functional)
         return f"{what} at {self.label} {self.which}"
 
     def features(self, way: Way, branch: Branch) -> list[Feature]:
@@ -219,7 +220,7 @@ class AtValue(Comparable):
     peaks = ()
 
     def __str__(self) -> str:
-        return f"{self.functional} at {self.response.parameter} = {self.value:g}"
+        return f"{called(self.functional)} at {self.response.parameter} = {self.value:g}"
 
     @property
     def places(self) -> tuple[float, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.stats import binom, binomtest, qmc
@@ -13,6 +13,10 @@ from scipy.stats import binom, binomtest, qmc
 from periodic.checks import between, one_of, shown
 from periodic.decisions.responses.quantity import Constraint, Quantity
 from periodic.orbit.scheme import Array
+from periodic.results.plots.frame import fresh
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 SURROGATE = 2**15
 """Points at which the second-order expansion is sampled."""
@@ -256,6 +260,33 @@ class Scattered:
             From 0 to 1.
         """
         return float(np.mean(~np.isfinite(self.samples(label))))
+
+    def plot(self, label: str | None = None, axes: Axes | None = None) -> Axes:
+        """Plot the distribution of a quantity: of the samples, and of the expansion to second order.
+
+        Parameters
+        ----------
+        label : str, optional
+            Name of the quantity; by default the first.
+        axes : matplotlib.axes.Axes, optional
+            Where to plot; by default in a figure of its own.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+        """
+        name = self.labels[0] if label is None else label
+        sampled, expanded = self.samples(name), np.sort(self._expanded[self._index(name)])
+        found = np.sort(sampled[np.isfinite(sampled)])
+        axes = fresh(axes)
+        parts = (np.arange(len(found)) + 0.5) / len(sampled)
+        axes.step(found, parts, where="mid", label=f"{len(sampled)} samples")
+        axes.plot(expanded, (np.arange(len(expanded)) + 0.5) / len(expanded), label="to second order")
+        axes.set(ylabel="probability of no more", ylim=(0, 1))
+        axes.set_xlabel(f"{name}: {self.quantities[self._index(name)]}", parse_math=False)
+        axes.legend()
+        return axes
 
     def table(self) -> str:
         """Return a line for each quantity: means and deviations, quantiles, what most of it is from.

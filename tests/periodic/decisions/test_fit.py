@@ -125,8 +125,26 @@ def test_what_cannot_be_told_apart_is_said() -> None:
     assert set(direction) == set(free)
     ratios = [direction[name] / found[name] for name in free]
     assert ratios == pytest.approx([ratios[0]] * 5, rel=1e-3)
-    assert "cannot be told apart" in found.table()
+    assert "cannot be told apart" in found.table() and "nor would another amplitude or phase" in found.table()
     assert math.isinf(found.errors["k"])
+    low = per.Measured(RESPONSE, omegas[:6], {AMPLITUDE: amplitudes[:6]}, sigma={AMPLITUDE: 0.05})
+    found = per.fit(sym.scene("duffing"), low, FREE, start=TRUTH)
+    (remark,) = [r for r in found.remarks if r.startswith("c is not determined by these data")]
+    place = float(remark.rpartition("Omega = ")[2].split()[0])
+    assert "would tell" in remark and place == pytest.approx(2.004, abs=0.05)  # the top of the resonance
+
+
+def test_pictures_of_a_fit() -> None:
+    """Assert that points, curve and residuals are drawn, and that another functional is refused."""
+    omegas, amplitudes = swept(0.0, 0)
+    data = per.Measured(RESPONSE, omegas, {AMPLITUDE: amplitudes}, sigma={AMPLITUDE: 0.01}, name="sweep")
+    found = per.fit(sym.scene("duffing"), data, {"k3": (0.2, 3.0)}, start={"k3": 0.9})
+    axes = found.plot()
+    assert axes.get_ylabel() == "amplitude of x" and len(axes.lines) == 2
+    assert axes.lines[1].get_xdata() == pytest.approx(omegas)
+    assert set(found.differences) == {"sweep"} and found.differences["sweep"].shape == (14, 2)
+    with pytest.raises(ValueError, match="it must be one of which points were measured"):
+        found.plot(per.PhaseLag("x"))
 
 
 def test_outliers_and_sheets_of_a_wrong_start() -> None:
