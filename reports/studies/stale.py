@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from reports.app.console import table
+from reports.studies.decide.page import REPORT as DECIDE
 from reports.studies.extremes.page import REPORT as EXTREMES
 from reports.studies.machines.page import REPORT as MACHINES
 from reports.studies.pages.content import Kept
@@ -17,7 +18,7 @@ from reports.studies.proof.page import REPORT as PROOF
 from reports.studies.structures.page import REPORT as STRUCTURES
 from reports.studies.trade.page import REPORT as TRADE
 
-REPORTS = (PAPER, TRADE, EXTREMES, MACHINES, STRUCTURES, PROOF)
+REPORTS = (PAPER, TRADE, EXTREMES, MACHINES, STRUCTURES, PROOF, DECIDE)
 
 TEXTS = ("tests/survey", "tests/mutants")
 """Folders of pages that name the commit of their engine in the text, for all that is on them."""

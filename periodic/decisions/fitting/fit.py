@@ -154,7 +154,7 @@ class _Search:
         try:
             match, branches = self._matched(self.data, begin)
             if match.misfit > AFAR**2 * match.count:
-                match, branches = self._matched(self.data, self._approached(begin))
+                match, branches = self._matched(self.data, self._approached(begin, match))
         except AbsentError as error:
             raise ValueError(f"at the start {error}; start={{...}} nearer to the data may have it") from None
         why = f"points still changed their sheets after {MOST_ROUNDS} rounds"
@@ -181,13 +181,15 @@ class _Search:
             again=self.fitted,
         )
 
-    def _approached(self, begin: Mapping[str, float]) -> Mapping[str, float]:
+    def _approached(self, begin: Mapping[str, float], match: Match) -> Mapping[str, float]:
         """Return values nearer to the data, seen with an eye that is coarse at first.
 
-        What such data do not tell stays near where it was, as if its range were its distribution.
+        So coarse that the start, whose match is given, is near. What such data do not tell stays where
+        it was, as if its range were its distribution.
         """
         values = begin
-        for part in COARSE:
+        near = [part for part in COARSE if match.loosened(part) <= AFAR**2 * match.count]
+        for part in COARSE[max(len(near) - 1, 0) :]:
             coarse = [d.loosened(part) if isinstance(d, Measured) else d for d in self.data]
             with suppress(AbsentError):  # with a finer eye there may be more to see
                 values = self.fitted(self._matched(coarse, values)[0], prior=1 / UNTOLD)[0].values

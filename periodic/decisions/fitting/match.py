@@ -108,6 +108,13 @@ class Foot:
         """All residuals, that of the place first."""
         return np.array([t.residual(m) for t, m in zip(self.spot.targets, self.models, strict=True)])
 
+    def loosened(self, part: float) -> Array:
+        """Return the residuals with further standard deviations, a part of what all points span."""
+        own, k = self.spot.measured, self.spot.index
+        coarse = own.loosened(part)
+        numbers = [own.sigmas[f][k] / coarse.sigmas[f][k] for f in own.values]
+        return self.difference * np.array([own.place_sigmas[k] / coarse.place_sigmas[k], *numbers])
+
     def rows(self, free: Sequence[str]) -> Rows:
         """Return residuals and their derivatives."""
         targets, changes = self.spot.targets, self._feature.changes
@@ -158,6 +165,10 @@ class Single:
         """The residual."""
         return np.array([(self.feature.value - self.measured.value) / self.measured.sigma])
 
+    def loosened(self, part: float) -> Array:
+        """Return the residual as it is."""
+        return self.difference
+
     def rows(self, free: Sequence[str]) -> Rows:
         """Return the residual and its derivatives."""
         slopes = np.array([[self.feature.gradient[name] for name in free]]) / self.measured.sigma
@@ -207,6 +218,10 @@ class Match:
             for rows in self._rows
         ]
         return np.concatenate(blocks)
+
+    def loosened(self, part: float) -> float:
+        """Return chi squared if points had further standard deviations, a part of what all of them span."""
+        return float(sum(np.sum(each.loosened(part) ** 2) for each in self.parts))
 
     @property
     def count(self) -> int:
