@@ -25,18 +25,20 @@ DISCS = ("dry-810N", "vitrea79-810N", "quasistatic-film-810N")
 MICRO = 1e-6
 
 
+X = sym.coordinate("x")
+
+
 def oscillator(*parts: sym.Part) -> sym.CompiledSystem:
     """A mass on a spring, m = k = 1, with parts."""
-    x = sym.coordinate("x")
-    return sym.compile(sym.combine([sym.Mass(x, 1.0), sym.Spring(x, 1.0), sym.HarmonicForce(x, 0.1), *parts]))
+    own = [sym.Mass(X, 1.0), sym.Spring(X, 1.0), sym.HarmonicForce(X, 0.1)]
+    return sym.compile(sym.combine([*own, *parts]))
 
 
 def anchors(tell: Tell) -> Found:
     """Compute modes whose numbers are known."""
-    x = sym.coordinate("x")
     rows: list[dict[str, Any]] = []
     tell("Jenkins")
-    joint = oscillator(sym.Damper(x, 0.01), sym.Jenkins(x, 0.25, 0.2))
+    joint = oscillator(sym.Damper(X, 0.01), sym.Jenkins(X, 0.25, 0.2))
     branch = per.mode_branch(joint, "x", (0.5, 2.0))
     for point, (amplitude, omega, ratio) in zip((branch[0], branch[-1]), JENKINS, strict=True):
         rows += [
@@ -59,13 +61,13 @@ def anchors(tell: Tell) -> Found:
         }
     )
     tell("cubic")
-    cubic = per.mode_branch(oscillator(sym.CubicSpring(x, 1.0)), "x", (0.1, 2.0), tol=1e-9)[-1]
+    cubic = per.mode_branch(oscillator(sym.CubicSpring(X, 1.0)), "x", (0.1, 2.0), tol=1e-9)[-1]
     top = float(cubic.maximum["x"])
     turn = math.sqrt(1 + top**2)
     exact = math.pi * turn / (2 * float(ellipk(top**2 / (2 * turn**2))))
     rows.append({"what": "cubic backbone, frequency at 2", "found": cubic.orbit.omega, "known": exact})
     tell("a second spring")
-    one = per.mode_branch(oscillator(sym.OneSidedSpring(x, 3.0)), "x", (0.5, 1.0))[-1]
+    one = per.mode_branch(oscillator(sym.OneSidedSpring(X, 3.0)), "x", (0.5, 1.0))[-1]
     rows.append({"what": "one-sided spring, period", "found": one.orbit.period, "known": 1.5 * math.pi})
     worst = max(abs(row["found"] / row["known"] - 1) for row in rows)
     return Found(numbers={"worst_ratio": worst}, rows=rows)
