@@ -14,6 +14,7 @@ NAMESPACES = {
     "symbolic.functions": "of symbols",
     "periodic.plots": "pictures of orbits and curves",
     "periodic.maps": "what design maps are made of",
+    "periodic.decisions": "results of fits, optima and scatter",
     "periodic.extend": "what extensions are written with",
 }
 """What few users call, and how its pages of the reference are headed."""

@@ -20,7 +20,7 @@ from periodic.correction.outcome import Outcome
 pytestmark = pytest.mark.gallery
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
-REFERENCE = ("parts", "symbolic", "films", "functions", "periodic", "plots", "maps", "extend")
+REFERENCE = ("parts", "symbolic", "films", "functions", "periodic", "plots", "maps", "decisions", "extend")
 PAGES = {str(file.relative_to(DOCS)): file for file in sorted(DOCS.glob("*/*.md"))}
 
 
@@ -97,11 +97,22 @@ def test_proof(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_fitting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Assert that the truth is within three standard errors, and that the damping is known less well."""
+    """Assert that the truth is within three standard errors once the jump is known, and not told before."""
     said = run("tutorials/fitting.md", tmp_path, monkeypatch)
-    found, errors = said["found"].x, said["errors"]
-    assert (abs(found - [1.0, 0.1]) < 3 * errors).all()
-    assert errors[1] / found[1] > 3 * errors[0] / found[0]
+    found = said["found"]
+    for name, value in {"k": 1.0, "k3": 1.0, "c": 0.1}.items():
+        assert abs(found[name] - value) < 3 * found.errors[name]
+    assert found.errors["c"] < 0.002 and not found.untold
+
+
+def test_damper(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """Assert onset of slip, optimum and scatter of the page."""
+    said = run("tutorials/damper.md", tmp_path, monkeypatch)
+    assert said["slips"].parameter == pytest.approx(0.2, rel=1e-4)
+    assert said["optimum"].objective == pytest.approx(1.101655980, rel=1e-8)
+    mean, deviation = said["found"].second_order("peak")
+    assert mean == pytest.approx(1.105, abs=0.02) and 0.001 < deviation < 0.05
+    assert "above 1.15 with a probability of" in capsys.readouterr().out
 
 
 def test_structures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
