@@ -22,7 +22,7 @@ def test_anchors_are_fresh() -> None:
 
 
 def test_damping_of_the_disc() -> None:
-    """Assert that the dry disc has the paper's damping ratio, and the film alone less where it moves little."""
+    """Assert that the dry disc has the paper's damping, and the film alone less where it moves little."""
     rows = {(row["scene"], round(row["amplitude_um"], 3)): row for row in REPORT.kept(FOLDER)["disc"].rows}
     assert rows["dry-810N", 0.1]["ratio"] == pytest.approx(0.007, rel=1e-5)
     assert rows["vitrea79-810N", 0.1]["ratio"] == pytest.approx(0.005827, rel=1e-3)
