@@ -55,6 +55,8 @@ def let_go(assembly: Assembly) -> None:
             raise ValueError(
                 f"parameter {name!r} has the name that free vibrations need; it must have another"
             )
+    if not assembly.motions:
+        raise ValueError("the model has no coordinates with masses; it must have some for its modes")
     xi = assembly.parameter(Parameter(DAMPING, 0.0, "1/s"), DAMPING, "1/s")
     assembly.parameter(Parameter(SIZE, 0.0), SIZE)
     motions = list(assembly.motions.values())

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from periodic.checks import named, positive, shown
+from periodic.checks import named, number, positive, shown, whole
 from periodic.conditions.functionals import Component, Smooth
 from periodic.conditions.levels import smooth
 from periodic.decisions.responses.quantity import Quantity
@@ -193,7 +193,9 @@ def recorded(
     ValueError
         For too few values.
     """
-    tau = float(at) * _numbers("time", time)
+    tau = number("at", at) * _numbers("time", time)
+    whole("orders", orders)
+    positive("sigma", sigma)
     if len(tau) <= 2 * orders + 1:
         raise ValueError(
             f"time has {len(tau)} values; it must have more than the {2 * orders + 1} numbers sought"

@@ -123,25 +123,23 @@ class _Search:
             reading = self._traced(start)
         except AbsentError as error:
             raise ValueError(f"at the start {error}") from None
-        region, last, why = 1.0, "", ""
+        region, why = 1.0, ""
         for _ in range(MOST_ROUNDS):
-            reached, last = self._descended(reading, region)
-            if last:
-                region *= SHRINK
-                if region < LEAST_REGION:
-                    why = last
-                    break
+            reached, why = self._descended(reading, region)
             try:
                 fresh = self._traced(reached.values)
             except AbsentError as error:
-                region *= SHRINK
                 why = str(error)
-                continue
-            agree = abs(fresh.numbers[0] - reached.numbers[0]) <= SETTLED * abs(fresh.numbers[0])
-            reading, stays = fresh, _distance(self.box, reading, fresh) <= SETTLED
-            why = "" if agree and not last else last or f"{MOST_ROUNDS} rounds did not settle it"
-            if agree and not last and (stays or self._is_known(reached, fresh)):
+            else:
+                reading = fresh
+                if not why and self._is_known(reached, fresh):
+                    break
+            if why:
+                region *= SHRINK
+            if region < LEAST_REGION:
                 break
+        else:
+            why = why or f"{MOST_ROUNDS} rounds did not settle it"
         return optimum(self, reading, why)
 
     def _traced(self, values: Mapping[str, float]) -> Reading:
@@ -210,7 +208,3 @@ class _Search:
         shares = self.shares(reading)
         missed = max((-s.slack(0.0) / s.size for s in shares if not s.aim), default=0.0)
         return (max(missed - SETTLED, 0.0), max(s.signed for s in shares if s.aim))
-
-
-def _distance(box: Box, a: Reading, b: Reading) -> float:
-    return float(np.abs(box.scaled(a.values) - box.scaled(b.values)).max())

@@ -199,9 +199,9 @@ class SpecialPoint(Comparable):
         """Return the special point."""
         points = branch.labelled(self.label)
         if self.which >= len(points):
+            many = f"{len(points)} points {self.label}, counted from 0, and which is {self.which}"
             raise AbsentError(
-                f"which is {self.which}; the branch over {branch.parameter} has {len(points)} points "
-                f"{self.label}"
+                f"the branch over {branch.parameter} has {many if points else f'no point {self.label}'}"
             )
         point = points[self.which]
         pick = {self.response.parameter: CONDITIONS[self.label](way.system, point)}

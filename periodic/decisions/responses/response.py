@@ -7,7 +7,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from typing import Any
 
 from periodic.checks import named, number, one_of, shown, whole
-from periodic.conditions.functionals import Functional
+from periodic.conditions.functionals import Functional, output_index
 from periodic.conditions.levels import smooth
 from periodic.correction.condition import Condition
 from periodic.correction.discretisation import Discretisation
@@ -188,6 +188,9 @@ class Response:
         ValueError
             Where a parameter is both free and given, and for what `trace` refuses.
         """
+        for functional in (peaks or {}).values():
+            if isinstance(getattr(functional, "output", None), str):
+                output_index(system, functional.output)  # type: ignore[attr-defined]
         for name in set(values) & {*self.values, self.parameter}:
             raise ValueError(f"{name} is free, and also given by the response; it must be one or the other")
         return trace(

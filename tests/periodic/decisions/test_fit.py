@@ -197,3 +197,7 @@ def test_bad_fits() -> None:
         per.MeasuredQuantity(3, 1.0, 0.1)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="time has 3 values; it must have more than the 11"):
         per.recorded(RESPONSE, 1.0, [0.0, 1.0, 2.0], {"x": [0.0, 0.0, 0.0]}, sigma=0.1)
+    with pytest.raises(ValueError, match="at is 'a'; it must be a number"):
+        per.recorded(RESPONSE, "a", [0.0], {"x": [0.0]}, sigma=0.1)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="sigma is -0.1; it must be a positive number"):
+        per.recorded(RESPONSE, 1.0, [0.0], {"x": [0.0]}, sigma=-0.1)

@@ -127,6 +127,13 @@ def test_bad_input(arguments: dict[str, object], said: str) -> None:
         per.mode_branch(oscillator(sym.Damper(X, 0.05)), **given)  # type: ignore[arg-type]
 
 
+def test_equations_have_no_masses() -> None:
+    """Assert that what has no inertia that is known is refused in a sentence."""
+    equations = sym.Equations(lambda x, p: {"q": x.v, "v": -x.q}, states={"q": 0.0, "v": 0.0})
+    with pytest.raises(ValueError, match="the model has no coordinates with masses"):
+        per.mode_branch(sym.compile(equations), "q", (0.1, 0.5))
+
+
 def test_names_that_free_vibrations_need() -> None:
     """Assert that a model with a parameter xi of its own is refused in a sentence."""
     system = sym.compile(

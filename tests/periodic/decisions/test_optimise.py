@@ -172,7 +172,13 @@ def test_bad_responses() -> None:
         response.highest(lambda system, orbit: 1.0)
     with pytest.raises(ValueError, match="bound is nan; it must be finite"):
         response.place("LP") <= math.nan  # noqa: B015
-    with pytest.raises(ValueError, match="at the start which is 5; the branch over Omega has 2 points LP"):
+    with pytest.raises(
+        ValueError, match="at the start the branch over Omega has 2 points LP, counted from 0, and which is 5"
+    ):
         per.optimise(sym.scene("duffing"), {"c": (0.1, 0.2)}, minimise=response.place("LP", which=5))
+    with pytest.raises(ValueError, match="at the start the branch over Omega has no point NS"):
+        per.optimise(sym.scene("duffing"), {"c": (0.1, 0.2)}, minimise=response.place("NS"))
+    with pytest.raises(ValueError, match="output is 'y'; it must be one of x"):
+        per.optimise(sym.scene("duffing"), {"c": (0.1, 0.2)}, minimise=response.highest(per.PeakToPeak("y")))
     with pytest.raises(ValueError, match="sheet is 4; the branch has 1 motions at 1"):
         per.optimise(sym.scene("duffing"), {"c": (0.1, 0.2)}, minimise=response.at(1.0, SWING, sheet=4))

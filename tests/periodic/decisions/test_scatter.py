@@ -130,6 +130,6 @@ def test_bad_questions() -> None:
     with pytest.raises(ValueError, match="it must be of one of highest"):
         found.probability(response.place("LP") <= 1.0)
     with pytest.raises(
-        ValueError, match="at the means of the parameters which is 0; the branch over Omega has 0"
+        ValueError, match="at the means of the parameters the branch over Omega has no point LP"
     ):
         per.scatter(linear(), {"c": DAMPING}, {"jump": response.place("LP")})
