@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
 import numpy as np
@@ -45,6 +45,9 @@ AFAR = 3.0
 
 COARSE = (0.1, 0.03, 0.01, 0.003, 0.001)
 """Standard deviations that are added for such a start, one after the other, in parts of the data's spans."""
+
+IMPROBABLE = 1e-3
+"""Probability of a misfit as large by chance below which another way to the data is tried."""
 
 BETTER = 1e-6
 """Part of the misfit by which another sheet must be nearer for it to be taken."""
@@ -126,7 +129,8 @@ class _Search:
 
     def __post_init__(self) -> None:
         for name, (low, high, value) in self._sensor_ranges.items():
-            self.box = self.box.joined(name, low, high, value)
+            if name not in self.box.names:
+                self.box = self.box.joined(name, low, high, value)
 
     @property
     def _sensor_ranges(self) -> dict[str, tuple[float, float, float]]:
@@ -149,14 +153,34 @@ class _Search:
         """Fit, let each point look for its sheet anew, and fit again until none changes.
 
         Where the start is far from the data they are first fitted with a coarse eye: with the distances of a
-        picture, which see past the sheets that a start has at wrong places.
+        picture, which see past the sheets that a start has at wrong places. Where what is found leaves more
+        than chance would, a point may be on a wrong sheet: other ways are tried.
         """
         try:
-            match, branches = self._matched(self.data, begin)
-            if match.misfit > AFAR**2 * match.count:
-                match, branches = self._matched(self.data, self._approached(begin, match))
+            match, _ = self._matched(self.data, begin)
+            far = match.misfit > AFAR**2 * match.count
+            near = self._approached(begin, self._stage(match)) if far else begin
+            found = self._settled(self._matched(self.data, near)[0])
         except AbsentError as error:
             raise ValueError(f"at the start {error}; start={{...}} nearer to the data may have it") from None
+        for way in (self._without_outliers, self._from_afar):
+            if found.chance < IMPROBABLE:
+                with suppress(AbsentError):
+                    again = self._settled(self._matched(self.data, way(begin, found))[0])
+                    found = min(found, again, key=lambda each: each.match.misfit)
+        return replace(found, orbits=self.count.orbits)
+
+    def _without_outliers(self, begin: Mapping[str, float], found: Fitted) -> Mapping[str, float]:
+        """Values that make little of the points that what was found is far from. Raises AbsentError."""
+        return replace(self, loss=LOSSES[-1])._settled(found.match).values
+
+    def _from_afar(self, begin: Mapping[str, float], found: Fitted) -> Mapping[str, float]:
+        """Values from the start with the coarsest eye."""
+        return self._approached(begin, 0)
+
+    def _settled(self, match: Match) -> Fitted:
+        """The fit from a match, each point on its nearest sheet."""
+        branches: tuple[Branch, ...] = ()
         why = f"points still changed their sheets after {MOST_ROUNDS} rounds"
         for _ in range(MOST_ROUNDS):
             match, status = self.fitted(match)
@@ -181,15 +205,18 @@ class _Search:
             again=self.fitted,
         )
 
-    def _approached(self, begin: Mapping[str, float], match: Match) -> Mapping[str, float]:
-        """Return values nearer to the data, seen with an eye that is coarse at first.
+    def _stage(self, match: Match) -> int:
+        """Which of the coarse eyes is the finest that sees a match near."""
+        near = [part for part in COARSE if match.loosened(part) <= AFAR**2 * match.count]
+        return max(len(near) - 1, 0)
 
-        So coarse that the start, whose match is given, is near. What such data do not tell stays where
-        it was, as if its range were its distribution.
+    def _approached(self, begin: Mapping[str, float], stage: int) -> Mapping[str, float]:
+        """Return values nearer to the data, seen with eyes that are ever less coarse, from one of them on.
+
+        What such data do not tell stays where it was, as if its range were its distribution.
         """
         values = begin
-        near = [part for part in COARSE if match.loosened(part) <= AFAR**2 * match.count]
-        for part in COARSE[max(len(near) - 1, 0) :]:
+        for part in COARSE[stage:]:
             coarse = [d.loosened(part) if isinstance(d, Measured) else d for d in self.data]
             with suppress(AbsentError):  # with a finer eye there may be more to see
                 values = self.fitted(self._matched(coarse, values)[0], prior=1 / UNTOLD)[0].values

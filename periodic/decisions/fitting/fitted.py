@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.stats import norm, t
+from scipy.stats import chi2, norm, t
 
 from periodic.checks import between, one_of
 from periodic.conditions.functionals import Smooth
@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 
 FAR = 5.0
 """Standard deviations from which on a measured point is said not to be of the model."""
+
+UNLIKELY = 1e-4
+"""Probability of a misfit as large by chance below which it is said to be none."""
 
 UNTOLD = 1 / np.sqrt(12)
 """Standard deviation of a number of which nothing but its range is known, in parts of the range."""
@@ -103,6 +106,13 @@ class Fitted:
         """Factor on all standard deviations: estimated where they were not given, else 1."""
         scaled = any(isinstance(each, Measured) and each.scaled for each in self.data)
         return float(np.sqrt(self._cost / self.freedom)) if scaled and self.freedom > 0 else 1.0
+
+    @property
+    def chance(self) -> float:
+        """The probability that chance alone leaves as much; 1 where the scatter was estimated from it."""
+        scaled = any(isinstance(each, Measured) and each.scaled for each in self.data)
+        known = self.freedom > 0 and self.loss == "linear" and not scaled
+        return float(chi2.sf(self.match.misfit, self.freedom)) if known else 1.0
 
     @property
     def covariance(self) -> Array:
@@ -230,6 +240,12 @@ class Fitted:
     def remarks(self) -> tuple[str, ...]:
         """What a reader should know: what is not told, values at ends of ranges, points far away."""
         said = [f"not known to be the best fit: {self.reason}"] if self.reason else []
+        if self.chance < UNLIKELY:
+            said.append(
+                f"chi squared is {self.match.misfit:.3g} with {self.freedom} degrees of freedom, which "
+                f"chance has with a probability of {self.chance:.0e}: model or standard deviations are "
+                f"wrong, or another start={{...}} is needed"
+            )
         said += [self._untold(step) for step in self.untold]
         for name, value in self.values.items():
             k = self.box.names.index(name)

@@ -201,3 +201,25 @@ def test_bad_fits() -> None:
         per.recorded(RESPONSE, "a", [0.0], {"x": [0.0]}, sigma=0.1)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="sigma is -0.1; it must be a positive number"):
         per.recorded(RESPONSE, 1.0, [0.0], {"x": [0.0]}, sigma=-0.1)
+
+
+def test_a_point_on_a_wrong_sheet_is_found_out() -> None:
+    """Assert that a fit that ends with a point on a wrong sheet looks for another way, and finds it."""
+    from reports.studies.decide.coverage import NOISE
+    from reports.studies.decide.truths import TRUTHS
+
+    truth, rng = TRUTHS[0], np.random.default_rng(79)
+    data = truth.measured(NOISE, rng)
+    begin = {name: value * (1 + 0.05 * rng.standard_normal()) for name, value in truth.hidden.items()}
+    found = per.fit(truth.system, data, truth.free, start=begin)
+    assert found.match.misfit == pytest.approx(5.46709, rel=1e-4)
+    assert found.chance > 0.5 and not found.remarks
+
+
+def test_a_model_that_is_wrong_is_told() -> None:
+    """Assert the sentence on chi squared where nothing fits."""
+    omegas, amplitudes = swept(0.0, 0)
+    wrong = [a * (1.1 if k % 2 else 0.9) for k, a in enumerate(amplitudes)]
+    data = per.Measured(RESPONSE, omegas[:9], {AMPLITUDE: wrong[:9]}, sigma={AMPLITUDE: 0.01})
+    found = per.fit(sym.scene("duffing"), data, {"k3": (0.2, 3.0)}, start={"k3": 0.9})
+    assert any(remark.startswith("chi squared is") for remark in found.remarks)
