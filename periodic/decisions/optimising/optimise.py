@@ -40,6 +40,9 @@ SHRINK = 0.25
 LEAST_REGION = 1e-6
 """Smallest region of the search, in parts of the ranges."""
 
+AT_EDGE = 0.999
+"""Part of the region within which its edge does not decide where the search ended."""
+
 FTOL = 1e-15
 """SLSQP's own tolerance, of the scaled objective: it goes on until rounding stops it."""
 
@@ -126,16 +129,17 @@ class _Search:
         region, why = 1.0, ""
         for _ in range(MOST_ROUNDS):
             reached, why = self._descended(reading, region)
+            way = float(np.abs(self.box.scaled(reached.values) - self.box.scaled(reading.values)).max())
             try:
                 fresh = self._traced(reached.values)
             except AbsentError as error:
                 why = str(error)
             else:
                 reading = fresh
-                if not why and self._is_known(reached, fresh):
+                inside = region == 1 or way < AT_EDGE * region
+                if not why and inside and self._is_known(reached, fresh):
                     break
-            if why:
-                region *= SHRINK
+            region = region * SHRINK if why else min(1.0, region / SHRINK)
             if region < LEAST_REGION:
                 break
         else:

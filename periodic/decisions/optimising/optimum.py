@@ -41,7 +41,7 @@ class Share:
     @property
     def size(self) -> float:
         """The unit in which a constraint is measured."""
-        return max(abs(self.limit), abs(self.feature.value), TINY)
+        return abs(self.limit) or max(abs(self.feature.value), TINY)
 
     def slack(self, t: float) -> float:
         """How far it is from its bound."""
