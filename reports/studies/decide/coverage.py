@@ -18,7 +18,7 @@ from reports.studies.decide.truths import TRUTHS, Truth
 from reports.studies.pages.content import Found, Kept, Section, Tell
 
 SETS = 200
-"""Sets of data for the smooth machine; those with events, whose fits take longer, have half as many."""
+"""Sets of data for the smooth machine; those with events, whose fits take longer, have 30."""
 
 NOISE = 0.01
 """Relative standard deviation of amplitudes."""
@@ -119,6 +119,6 @@ class Coverage:
 
 
 COVERAGE = tuple(
-    Coverage(truth=truth, sets=sets) for truth, sets in zip(TRUTHS, (SETS, 100, 100), strict=True)
+    Coverage(truth=truth, sets=sets) for truth, sets in zip(TRUTHS, (SETS, 30, 30), strict=True)
 )
 """In the order of the page."""
