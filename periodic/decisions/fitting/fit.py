@@ -152,9 +152,9 @@ class _Search:
     def found(self, begin: Mapping[str, float]) -> Fitted:
         """Fit, let each point look for its sheet anew, and fit again until none changes.
 
-        Where the start is far from the data they are first fitted with a coarse eye: with the distances of a
-        picture, which see past the sheets that a start has at wrong places. Where what is found leaves more
-        than chance would, a point may be on a wrong sheet: other ways are tried.
+        Where the start is far from the data these first get further standard deviations, in steps down to
+        none: with distances as in a picture a point sees past the sheets that a start has at wrong places.
+        Where what is found leaves more than chance would, a point may be on a wrong sheet: other ways are tried.
         """
         try:
             match, _ = self._matched(self.data, begin)
@@ -175,7 +175,7 @@ class _Search:
         return replace(self, loss=LOSSES[-1])._settled(found.match).values
 
     def _from_afar(self, begin: Mapping[str, float], found: Fitted) -> Mapping[str, float]:
-        """Values from the start with the coarsest eye."""
+        """Values from the start with the largest further deviations."""
         return self._approached(begin, 0)
 
     def _settled(self, match: Match) -> Fitted:
@@ -206,19 +206,19 @@ class _Search:
         )
 
     def _stage(self, match: Match) -> int:
-        """Which of the coarse eyes is the finest that sees a match near."""
+        """Index of the smallest of the further standard deviations with which a match is near the data."""
         near = [part for part in COARSE if match.loosened(part) <= AFAR**2 * match.count]
         return max(len(near) - 1, 0)
 
     def _approached(self, begin: Mapping[str, float], stage: int) -> Mapping[str, float]:
-        """Return values nearer to the data, seen with eyes that are ever less coarse, from one of them on.
+        """Return values nearer to the data, fitted with ever smaller further deviations, from one of them on.
 
         What such data do not tell stays where it was, as if its range were its distribution.
         """
         values = begin
         for part in COARSE[stage:]:
             coarse = [d.loosened(part) if isinstance(d, Measured) else d for d in self.data]
-            with suppress(AbsentError):  # with a finer eye there may be more to see
+            with suppress(AbsentError):  # with smaller ones the branch may have motions near
                 values = self.fitted(self._matched(coarse, values)[0], prior=1 / UNTOLD)[0].values
         return values
 
