@@ -154,7 +154,8 @@ class _Search:
 
         Where the start is far from the data these first get further standard deviations, in steps down to
         none: with distances as in a picture a point sees past the sheets that a start has at wrong places.
-        Where what is found leaves more than chance would, a point may be on a wrong sheet: other ways are tried.
+        Where what is found leaves more than chance would, a point may be on a wrong sheet: other ways are
+        tried.
         """
         try:
             match, _ = self._matched(self.data, begin)

@@ -118,7 +118,5 @@ class Coverage:
         }
 
 
-COVERAGE = tuple(
-    Coverage(truth=truth, sets=sets) for truth, sets in zip(TRUTHS, (SETS, 30, 30), strict=True)
-)
+COVERAGE = tuple(Coverage(truth=truth, sets=sets) for truth, sets in zip(TRUTHS, (SETS, 30, 30), strict=True))
 """In the order of the page."""
