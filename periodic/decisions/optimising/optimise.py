@@ -12,6 +12,7 @@ before joins the problem, until nothing is found that the optimum did not know o
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, cast
 
@@ -31,7 +32,7 @@ from periodic.system import System, check_system
 SETTLED = 1e-6
 """Part of the objective by which branches traced anew may differ from it."""
 
-MOST_ROUNDS = 20
+MOST_ROUNDS = 40
 """How often branches are traced anew before the search is given up."""
 
 SHRINK = 0.25
@@ -129,6 +130,7 @@ class _Search:
         region, why = 1.0, ""
         for _ in range(MOST_ROUNDS):
             reached, why = self._descended(reading, region)
+            better = self._merit(reached) < self._merit(reading)
             way = float(np.abs(self.box.scaled(reached.values) - self.box.scaled(reading.values)).max())
             try:
                 fresh = self._traced(reached.values)
@@ -139,7 +141,7 @@ class _Search:
                 inside = region == 1 or way < AT_EDGE * region
                 if not why and inside and self._is_known(reached, fresh):
                     break
-            region = region * SHRINK if why else min(1.0, region / SHRINK)
+            region = min(1.0, region / SHRINK) if better or not why else region * SHRINK
             if region < LEAST_REGION:
                 break
         else:
@@ -177,6 +179,7 @@ class _Search:
         number_of = len(begin)
 
         def rows(x: Array) -> list[Share]:
+            asked.append(x[:number_of])
             return self.shares(follow.at(x[:number_of]))
 
         def slack(x: Array) -> Array:
@@ -187,6 +190,7 @@ class _Search:
 
         top = max(share.signed for share in self.shares(reading) if share.aim) / size
         last = np.append(np.zeros(number_of), 1.0)
+        asked: list[Array] = []
         said = ""
         try:
             cast(Any, minimize)(
@@ -198,8 +202,10 @@ class _Search:
                 constraints=[{"type": "ineq", "fun": slack, "jac": slopes}],
                 options={"ftol": FTOL, "maxiter": 200},
             )
-        except LostError as error:
+        except LostError as error:  # which may have ceased to be there, or to matter
             said = str(error)
+            with suppress(AbsentError):
+                follow.keep(asked[-1], self._traced(self.box.values(asked[-1])))
         return follow.best(self._merit), said
 
     def _slope(self, share: Share, size: float) -> Array:

@@ -96,6 +96,8 @@ class Feature:
         What determines the orbit besides what determines every orbit, by parameter.
     name : str
         What it is, in words.
+    bounds : tuple of float, optional
+        Range (SI) of the parameter that `pick` determines, outside of which it is none.
     """
 
     way: Way
@@ -103,6 +105,7 @@ class Feature:
     functional: Functional
     pick: Mapping[str, Condition] = field(default_factory=dict)
     name: str = ""
+    bounds: tuple[float, float] | None = None
 
     @property
     def orbit(self) -> Orbit:
@@ -116,8 +119,11 @@ class Feature:
 
     @cached_property
     def changes(self) -> Changes:
-        """How the orbit changes with each parameter."""
-        return Changes.of(self.way.system, self.orbit, {**self.way.determined, **self.pick})
+        """How the orbit changes with each parameter. Raises LostError where its equations are not met."""
+        try:
+            return Changes.of(self.way.system, self.orbit, {**self.way.determined, **self.pick})
+        except (ArithmeticError, ValueError) as error:
+            raise LostError(f"{self.name}: {error}") from error
 
     @cached_property
     def gradient(self) -> dict[str, float]:
@@ -146,9 +152,16 @@ class Feature:
         try:
             guess = self.changes.predicted(values)
             found = self.way.solved(guess, values, self.pick)
-        except (ArithmeticError, ValueError):
+        except (ArithmeticError, ValueError, LostError):
             return None
-        return None if found is None else replace(self, point=found)
+        return None if found is None or not self._inside(found) else replace(self, point=found)
+
+    def _inside(self, point: Point) -> bool:
+        """Whether what `pick` determines is in its range."""
+        if self.bounds is None or not self.pick:
+            return True
+        low, high = sorted(self.bounds)
+        return low <= point.orbit.parameters[next(iter(self.pick))] <= high
 
 
 def _said(begin: Mapping[str, float], values: Mapping[str, float], done: float) -> str:

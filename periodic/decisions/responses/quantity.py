@@ -156,7 +156,8 @@ class Extreme(Comparable):
             pick = self._pick(way.system, branch, values, k) if counts[k] else None
             if pick is not None:
                 place = f"at {self.response.parameter} = {point.parameter:.6g}"
-                found.append(Feature(way, point, self.functional, pick, f"{self} {place}"))
+                named = f"{self} {place}"
+                found.append(Feature(way, point, self.functional, pick, named, self.response.bounds))
         if not found:
             kind = "stable motion" if self.stable else "peak"
             raise AbsentError(f"the branch over {self.response.parameter} has no {kind}: {branch.ending}")
@@ -205,7 +206,8 @@ class SpecialPoint(Comparable):
             )
         point = points[self.which]
         pick = {self.response.parameter: CONDITIONS[self.label](way.system, point)}
-        return [Feature(way, point, self.functional or Value(self.response.parameter), pick, str(self))]
+        functional = self.functional or Value(self.response.parameter)
+        return [Feature(way, point, functional, pick, str(self), self.response.bounds)]
 
 
 @dataclass(frozen=True)

@@ -39,3 +39,29 @@ def test_truths_are_those_of_the_models(truth) -> None:  # type: ignore[no-untyp
     branch = truth.response.traced(truth.system, truth.hidden, at=[omega])
     there = [size(truth.system, point.orbit) for point in branch if point.parameter == omega]
     assert min(abs(a / exact - 1) for a in there) < 1e-5
+
+
+def test_intervals_hold_the_truth() -> None:
+    """Assert that all fits ended, that 95 % intervals are such by chance, and one set of data anew."""
+    from scipy.stats import binomtest
+
+    from reports.studies.decide.coverage import fitted
+
+    for truth in TRUTHS:
+        rows = REPORT.kept(FOLDER)[truth.key].rows
+        assert not [row["reason"] for row in rows if row["reason"]]
+        for name in truth.hidden:
+            held = sum(row[f"{name} held"] for row in rows)
+            ends = binomtest(held, len(rows)).proportion_ci(0.99, method="wilson")
+            assert ends.low <= 0.95 <= ends.high
+            assert abs(sum(row[name] for row in rows)) / len(rows) < 3 / len(rows) ** 0.5
+    kept, found = REPORT.kept(FOLDER)["coverage-duffing"].rows[3], fitted("coverage-duffing", 3)
+    for name in TRUTHS[0].hidden:
+        assert found[name] == pytest.approx(kept[name], abs=1e-3)
+
+
+def test_designs_are_no_worse_than_brute_force() -> None:
+    """Assert that each optimum is known to be one, and within 1e-6 of a direct search or better."""
+    for row in REPORT.kept(FOLDER)["designs"].rows:
+        assert not row["reason"]
+        assert row["objective"] <= row["brute"] * (1 + 1e-6)
