@@ -21,7 +21,7 @@ from .correction.problem import Problem
 from .correction.tolerance import Accuracy, Tolerance
 from .decisions.fitting.fit import fit
 from .decisions.fitting.measured import Measured, MeasuredQuantity, recorded
-from .decisions.modes import mode_branch
+from .decisions.modebranch import mode_branch
 from .decisions.optimising.optimise import optimise
 from .decisions.responses.response import Response
 from .decisions.scattering.scatter import scatter

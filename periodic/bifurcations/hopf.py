@@ -182,7 +182,7 @@ def _oscillation(
     values[index_of(system, frequency)] = omega
     at_rest = replace(orbit, parameter=values)
     origin = constant(uniform(Scheme(), NTST), orbit.nodes[0], orbit.algebraic[0, 0], values, orbit.layout)
-    direction = _linear(system, at_rest, origin)
+    direction = oscillating(system, at_rest, origin)
     last: SwitchError | None = None
     for length in [FIRST_DISTANCE * part for part in FIRST_LENGTHS] if distance is None else [distance]:
         try:
@@ -193,11 +193,28 @@ def _oscillation(
     raise last
 
 
-def _linear(system: System, at_rest: Orbit, origin: Orbit) -> Increment:
-    """The direction Re(exp(i tau) v) of states and unknowns, v the eigenvector of dx' = J dx to i."""
+def oscillating(system: System, at_rest: Orbit, origin: Orbit, near: complex = 1j) -> Increment:
+    """Return the oscillation Re(exp(i tau) v) of states and unknowns, v an eigenvector of dx' = J dx.
+
+    Parameters
+    ----------
+    system : System
+        The equations.
+    at_rest : Orbit
+        The equilibrium.
+    origin : Orbit
+        The same on the mesh that the increment is for.
+    near : complex
+        Where its eigenvalue is, per unit of tau.
+
+    Returns
+    -------
+    Increment
+        The oscillation, of the eigenvector's size.
+    """
     rows = rows_at(system, at_rest, ())
     values, vectors = np.linalg.eig(rows.jacobian)
-    v = vectors[:, np.abs(values - 1j).argmin()]
+    v = vectors[:, np.abs(values - near).argmin()]
     v = v * np.exp(-1j * np.angle(v[np.abs(v).argmax()]))
     unknowns = rows.unknowns @ v
 

@@ -53,7 +53,9 @@ class Level(Condition):
     def __post_init__(self) -> None:
         finite = isinstance(self.value, int | float | np.number) and np.isfinite(self.value)
         if not (finite or (isinstance(self.value, str) and self.value)):
-            raise ValueError(f"value of a Level is {self.value!r}; it must be a finite number")
+            raise ValueError(
+                f"value of a Level is {self.value!r}; it must be a finite number, or a parameter's name"
+            )
 
     def check(self, system: System, parameter: Array) -> None:
         """Refuse a system without the parameter that is named."""

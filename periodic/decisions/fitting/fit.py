@@ -16,8 +16,8 @@ import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
 
 from periodic.checks import one_of, shown
-from periodic.decisions.fitting.fitted import UNTOLD, Fitted
-from periodic.decisions.fitting.match import Foot, Match
+from periodic.decisions.fitting.fitted import LOSSES, UNTOLD, Fitted
+from periodic.decisions.fitting.match import Match
 from periodic.decisions.fitting.matching import matched, sensors_of
 from periodic.decisions.fitting.measured import Measured, MeasuredQuantity
 from periodic.decisions.responses.box import Box
@@ -27,9 +27,6 @@ from periodic.decisions.responses.quantity import AbsentError
 from periodic.orbit.scheme import Array
 from periodic.results.branch import Branch
 from periodic.system import System, check_system
-
-LOSSES = ("linear", "soft_l1", "huber", "cauchy")
-"""SciPy's losses."""
 
 GAIN = (0.01, 100.0)
 """Range of an unknown gain."""
@@ -45,6 +42,9 @@ AFAR = 3.0
 
 COARSE = (0.1, 0.03, 0.01, 0.003, 0.001)
 """Standard deviations that are added for such a start, one after the other, in parts of the data's spans."""
+
+ROBUST = "cauchy"
+"""The loss that makes least of outliers."""
 
 IMPROBABLE = 1e-3
 """Probability of a misfit as large by chance below which another way to the data is tried."""
@@ -161,27 +161,26 @@ class _Search:
             match, _ = self._matched(self.data, begin)
             far = match.misfit > AFAR**2 * match.count
             near = self._approached(begin, self._stage(match)) if far else begin
-            found = self._settled(self._matched(self.data, near)[0])
+            found = self._settled(*self._matched(self.data, near))
         except AbsentError as error:
             raise ValueError(f"at the start {error}; start={{...}} nearer to the data may have it") from None
         for way in (self._without_outliers, self._from_afar):
             if found.chance < IMPROBABLE:
                 with suppress(AbsentError):
-                    again = self._settled(self._matched(self.data, way(begin, found))[0])
+                    again = self._settled(*self._matched(self.data, way(begin, found)))
                     found = min(found, again, key=lambda each: each.match.misfit)
         return replace(found, orbits=self.count.orbits)
 
     def _without_outliers(self, begin: Mapping[str, float], found: Fitted) -> Mapping[str, float]:
         """Values that make little of the points that what was found is far from. Raises AbsentError."""
-        return replace(self, loss=LOSSES[-1])._settled(found.match).values
+        return replace(self, loss=ROBUST)._settled(found.match, found.branches).values
 
     def _from_afar(self, begin: Mapping[str, float], found: Fitted) -> Mapping[str, float]:
         """Values from the start with the largest further deviations."""
         return self._approached(begin, 0)
 
-    def _settled(self, match: Match) -> Fitted:
-        """The fit from a match, each point on its nearest sheet."""
-        branches: tuple[Branch, ...] = ()
+    def _settled(self, match: Match, branches: tuple[Branch, ...]) -> Fitted:
+        """The fit from a match, on branches, each point on its nearest sheet."""
         why = f"points still changed their sheets after {MOST_ROUNDS} rounds"
         for _ in range(MOST_ROUNDS):
             match, status = self.fitted(match)
@@ -243,8 +242,8 @@ class _Search:
 
         def residual(x: Array) -> Array:
             try:
-                found = self._at(follow, full(x)).residual
-            except AbsentError:
+                found = self._at(follow, full(x)).residual  # with its derivatives, or it is refused
+            except (AbsentError, LostError):
                 found = np.full(len(match.residual), np.nan)
             return np.append(found, prior * (x - inside))
 
@@ -252,6 +251,8 @@ class _Search:
             found = (self._at(follow, full(x)).jacobian * self.box.widths)[:, moving]
             return np.concatenate([found, prior * np.eye(len(x))])
 
+        if not np.isfinite(residual(inside)).all():
+            return match, "the motions nearest to the data are lost beside where the fit begins"
         solved: OptimizeResult = least_squares(
             residual,
             inside,
@@ -264,9 +265,8 @@ class _Search:
             gtol=PRECISION,
             max_nfev=50,
         )
-        return self._at(
-            follow, full(solved.x)
-        ), "" if solved.status > 0 else f"least squares ended early: {solved.message}"
+        why = "" if solved.status > 0 else f"least squares ended early: {solved.message}"
+        return self._at(follow, full(solved.x)), why
 
     def _at(self, follow: Follow[Match], scaled: Array) -> Match:
         """The match at values, in parts of the ranges: followed, else anew. Raises AbsentError."""
@@ -274,10 +274,8 @@ class _Search:
             return follow.at(scaled)
         except LostError:
             values = self.box.values(scaled)
-            data = [
-                part.spot.measured if isinstance(part, Foot) else part.measured for part in follow.first.parts
-            ]
-            return follow.keep(scaled, self._matched(list(dict.fromkeys(data)), values)[0])
+            data = list(dict.fromkeys(part.data for part in follow.first.parts))
+            return follow.keep(scaled, self._matched(data, values)[0])
 
     def _matched(
         self, data: Sequence[Measured | MeasuredQuantity], values: Mapping[str, float]

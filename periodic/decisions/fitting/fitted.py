@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import bisect, brentq
 from scipy.stats import chi2, norm, t
 
 from periodic.checks import between, one_of
@@ -19,6 +19,7 @@ from periodic.decisions.fitting.picture import draw
 from periodic.decisions.fitting.proposal import proposal
 from periodic.decisions.responses.box import Box
 from periodic.decisions.responses.feature import LostError
+from periodic.decisions.responses.quantity import AbsentError
 from periodic.orbit.scheme import Array
 from periodic.results.branch import Branch
 from periodic.system import System
@@ -41,13 +42,18 @@ MENTIONED = 0.1
 WIDEST = 8.0
 """How many of the linear interval's half widths a profile is searched for its ends."""
 
-WEIGHTS: dict[str, Callable[[Array], Array]] = {
-    "linear": np.ones_like,
-    "soft_l1": lambda z: (1 + z) ** -0.5,
-    "huber": lambda z: np.where(z <= 1, 1.0, np.maximum(z, 1.0) ** -0.5),
-    "cauchy": lambda z: 1 / (1 + z),
+Loss = Callable[[Array], Array]
+
+LOSSES: dict[str, tuple[Loss, Loss]] = {
+    "linear": (lambda z: z, np.ones_like),
+    "soft_l1": (lambda z: 2 * (np.sqrt(1 + z) - 1), lambda z: (1 + z) ** -0.5),
+    "huber": (
+        lambda z: np.where(z <= 1, z, 2 * np.sqrt(z) - 1),
+        lambda z: np.where(z <= 1, 1.0, np.maximum(z, 1.0) ** -0.5),
+    ),
+    "cauchy": (np.log1p, lambda z: 1 / (1 + z)),
 }
-"""Weights of squared residuals z by the losses."""
+"""SciPy's losses of squared residuals z, and their derivatives, the weights."""
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -103,15 +109,25 @@ class Fitted:
 
     @property
     def scale(self) -> float:
-        """Factor on all standard deviations: estimated where they were not given, else 1."""
-        scaled = any(isinstance(each, Measured) and each.scaled for each in self.data)
-        return float(np.sqrt(self._cost / self.freedom)) if scaled and self.freedom > 0 else 1.0
+        """Factor on all standard deviations: 1 where they were given, else estimated.
+
+        Infinite of no more numbers than values sought, which leave nothing to estimate it from.
+        """
+        if not self._estimated:
+            return 1.0
+        z = self.match.residual**2
+        left = float(np.sum(z * LOSSES[self.loss][1](z)))
+        return float(np.sqrt(left / self.freedom)) if self.freedom > 0 else np.inf
+
+    @property
+    def _estimated(self) -> bool:
+        """Whether the scatter of the data is to be estimated from what the fit leaves."""
+        return any(isinstance(each, Measured) and each.scaled for each in self.data)
 
     @property
     def chance(self) -> float:
         """The probability that chance alone leaves as much; 1 where the scatter was estimated from it."""
-        scaled = any(isinstance(each, Measured) and each.scaled for each in self.data)
-        known = self.freedom > 0 and self.loss == "linear" and not scaled
+        known = self.freedom > 0 and self.loss == "linear" and not self._estimated
         return float(chi2.sf(self.match.misfit, self.freedom)) if known else 1.0
 
     @property
@@ -123,7 +139,8 @@ class Fitted:
         found = np.zeros((len(directions), len(directions)))
         for variance, direction in zip(variances, directions, strict=True):
             square = np.outer(direction, direction)
-            found += np.where(np.abs(square) > 1e-12, variance * square, 0.0)
+            told = np.abs(square) > 1e-12
+            found[told] += variance * square[told]
         return found * np.outer(self.box.widths, self.box.widths)
 
     @property
@@ -133,11 +150,11 @@ class Fitted:
 
     @property
     def correlation(self) -> Array:
-        """Correlation of the values, shape (n, n)."""
+        """Correlation of the values, shape (n, n); 0 of those that the data do not tell at all."""
         covariance = self.covariance
         deviations = np.sqrt(np.diag(covariance))
-        with np.errstate(invalid="ignore"):
-            return np.nan_to_num(covariance / np.outer(deviations, deviations), nan=0.0)
+        known = np.isfinite(np.outer(deviations, deviations))
+        return np.where(known, covariance, 0.0) / np.where(known, np.outer(deviations, deviations), 1.0)
 
     def interval(self, name: str, confidence: float = 0.95, *, profile: bool = False) -> tuple[float, float]:
         """Return an interval (SI) that holds the true value with a confidence.
@@ -165,7 +182,8 @@ class Fitted:
         """
         k = self.box.names.index(one_of("name", name, self.box.names))
         part = 0.5 + between("confidence", confidence, 0.0, 1.0) / 2
-        factor = float(norm.ppf(part) if self.scale == 1.0 else t.ppf(part, self.freedom))
+        student = self._estimated and self.freedom > 0
+        factor = float(t.ppf(part, self.freedom) if student else norm.ppf(part))
         half, value = factor * self.errors[name], self.values[name]
         ends = (max(value - half, self.box.low[k]), min(value + half, self.box.high[k]))
         if not profile:
@@ -182,11 +200,10 @@ class Fitted:
         def risen(at: float) -> float:
             near = known[min(known, key=lambda other: abs(other - at))]
             try:
-                begun = near.at({**near.values, name: at})
-            except LostError:
+                known[at] = self.again(near.at({**near.values, name: at}), [name])[0]
+            except (LostError, AbsentError):  # the model has no such motions there
                 return np.inf
-            known[at] = self.again(begun, [name])[0]
-            rise = max(self._cost_of(known[at]) - self._cost, 0.0) / self.scale**2
+            rise = max(self._cost_of(known[at]) - self._cost_of(self.match), 0.0) / self.scale**2
             return float(np.sqrt(rise)) - factor
 
         inner, outer = value, float(np.clip(value + step, low, high))
@@ -194,24 +211,18 @@ class Fitted:
             if outer in (low, high) or abs(outer - value) > WIDEST * abs(step):
                 return outer
             inner, outer = outer, float(np.clip(outer + step / 2, low, high))
-        if not np.isfinite(risen(outer)):
-            return outer
+        solved = brentq if np.isfinite(risen(outer)) else bisect
         return float(
-            brentq(lambda at: -factor if at == value else risen(at), inner, outer, xtol=1e-3 * abs(step))
+            solved(lambda at: -factor if at == value else risen(at), inner, outer, xtol=1e-3 * abs(step))
         )
 
-    @cached_property
-    def _cost(self) -> float:
-        return self._cost_of(self.match)
-
     def _cost_of(self, match: Match) -> float:
-        z = match.residual**2
-        return float(np.sum(z * WEIGHTS[self.loss](z)))
+        return float(np.sum(LOSSES[self.loss][0](match.residual**2)))
 
     @cached_property
     def _singular(self) -> tuple[Array, Array, Array]:
         """Singular values and directions of the weighted derivatives, in parts of the ranges."""
-        weights = np.sqrt(WEIGHTS[self.loss](self.match.residual**2))
+        weights = np.sqrt(LOSSES[self.loss][1](self.match.residual**2))
         found = np.linalg.svd(weights[:, None] * self.match.jacobian * self.box.widths, full_matrices=False)
         return found[0], found[1], found[2]
 
@@ -246,6 +257,9 @@ class Fitted:
                 f"chance has with a probability of {self.chance:.0e}: model or standard deviations are "
                 f"wrong, or another start={{...}} is needed"
             )
+        for branch in self.branches:
+            if any(stop.reason.numerical for stop in branch.stops):
+                said.append(f"the branch over {branch.parameter} stopped early: {branch.ending}")
         said += [self._untold(step) for step in self.untold]
         for name, value in self.values.items():
             k = self.box.names.index(name)

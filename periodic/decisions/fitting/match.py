@@ -16,7 +16,6 @@ import numpy as np
 
 from periodic.conditions.functionals import Value
 from periodic.conditions.levels import Peak
-from periodic.conditions.sensitivity import Changes
 from periodic.decisions.fitting.measured import Measured, MeasuredQuantity
 from periodic.decisions.fitting.misfit import Misfit, Target
 from periodic.decisions.responses.feature import Feature, Way
@@ -84,6 +83,11 @@ class Foot:
     def __str__(self) -> str:
         return str(self.spot)
 
+    @property
+    def data(self) -> Measured:
+        """What it was measured with."""
+        return self.spot.measured
+
     def at(self, values: Mapping[str, float], free: Sequence[str]) -> Foot:
         """Return the nearest motion at other values of free parameters and sensors (SI). Raises LostError."""
         spot = replace(self.spot, values=values)
@@ -126,7 +130,7 @@ class Foot:
     @property
     def _sensors(self) -> dict[str, Array]:
         """Derivatives in gains and offsets, without their part along the branch, where the foot gives way."""
-        changes = Changes.of(self.way.system, self.point.orbit, self.way.determined)
+        changes = self.way.changes(self.point.orbit, {}, str(self))
         targets, place = self.spot.targets, self.spot.measured.response.parameter
         rates = [changes.rates(target.functional)[place] for target in targets[1:]]
         along = [t.gain / t.sigma * rate for t, rate in zip(targets[1:], rates, strict=True)]
@@ -150,6 +154,11 @@ class Single:
 
     def __str__(self) -> str:
         return str(self.measured.quantity)
+
+    @property
+    def data(self) -> MeasuredQuantity:
+        """What was measured."""
+        return self.measured
 
     def at(self, values: Mapping[str, float], free: Sequence[str]) -> Single:
         """Return the feature at other values. Raises LostError."""

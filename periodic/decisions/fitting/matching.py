@@ -8,7 +8,7 @@ from periodic.decisions.fitting.match import Foot, Match, Single, Spot
 from periodic.decisions.fitting.measured import Measured, MeasuredQuantity
 from periodic.decisions.responses.feature import Count, LostError, Way
 from periodic.decisions.responses.quantity import AbsentError
-from periodic.decisions.responses.reading import traced
+from periodic.decisions.responses.readquantities import traced
 from periodic.decisions.responses.words import called
 from periodic.results.branch import Branch
 from periodic.system import System

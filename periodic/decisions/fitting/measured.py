@@ -146,7 +146,7 @@ class MeasuredQuantity:
     sigma: float
 
     def __post_init__(self) -> None:
-        if not hasattr(self.quantity, "features"):
+        if not isinstance(self.quantity, Quantity):
             raise ValueError(
                 f'quantity is {shown(self.quantity)}; it must be one, as response.place("LP") is'
             )

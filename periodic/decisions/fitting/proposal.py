@@ -67,7 +67,7 @@ def _change(
     """How many standard deviations a motion moves away from the branch along a direction."""
     try:
         rates = Changes.of(system, point.orbit, test.response.determined).rates(functional)
-    except (ArithmeticError, ValueError, np.linalg.LinAlgError):  # beside a fold, and where nothing moves
+    except (ArithmeticError, ValueError):  # at a fold, and where nothing moves, nothing can be told
         return 0.0
     moved = sum(rates[name] * change for name, change in direction.items() if name in rates) / sigma
     steep = rates[test.response.parameter] / sigma * float(np.median(test.place_sigmas))

@@ -25,7 +25,7 @@ from periodic.decisions.responses.box import Box
 from periodic.decisions.responses.feature import Count, Feature, LostError
 from periodic.decisions.responses.follow import Follow
 from periodic.decisions.responses.quantity import AbsentError, Constraint, Quantity
-from periodic.decisions.responses.reading import Reading, traced
+from periodic.decisions.responses.readquantities import Reading, traced
 from periodic.orbit.scheme import Array
 from periodic.system import System, check_system
 
@@ -86,17 +86,18 @@ def optimise(
     """
     check_system(system)
     box = Box.of(system, free)
-    if (minimise is None) == (maximise is None):
+    asked = [(q, sense) for q, sense in ((minimise, 1.0), (maximise, -1.0)) if q is not None]
+    if len(asked) != 1:
         raise ValueError("minimise and maximise are both given, or neither; it must be one of the two")
-    objective, sense = (minimise, 1.0) if minimise is not None else (maximise, -1.0)
+    ((objective, sense),) = asked
     for constraint in _checked(objective, subject_to):
         if not isinstance(constraint, Constraint):
             raise ValueError(f"subject_to has {shown(constraint)}; it must be a quantity <= or >= a number")
-    return _Search(system, box, objective, sense, list(subject_to)).found(box.start(start))  # type: ignore[arg-type]
+    return _Search(system, box, objective, sense, list(subject_to)).found(box.start(start))
 
 
 def _checked(objective: object, subject_to: object) -> Sequence[Constraint]:
-    if not hasattr(objective, "features"):
+    if not isinstance(objective, Quantity):
         raise ValueError(
             f"objective is {shown(objective)}; it must be a quantity, as response.highest(...) is"
         )

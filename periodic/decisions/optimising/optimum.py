@@ -10,8 +10,8 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from periodic.decisions.responses.box import AT_END, Box
-from periodic.decisions.responses.feature import Count, Feature
-from periodic.decisions.responses.reading import Reading
+from periodic.decisions.responses.feature import Count, Feature, LostError
+from periodic.decisions.responses.readquantities import Reading
 from periodic.orbit.scheme import Array
 from periodic.results.branch import Branch
 
@@ -124,7 +124,10 @@ def optimum(search: SearchLike, reading: Reading, why: str) -> Optimum:
     missed = [s for s in shares if not s.aim and s.slack(0.0) < -ACTIVE * s.size]
     active = [s for s in shares if abs(s.slack(top)) <= ACTIVE * max(s.size, abs(top) if s.aim else 0.0)]
     scaled = box.scaled(reading.values)
-    weights, left = _weights(box, active, scaled)
+    try:
+        weights, left = _weights(box, active, scaled)
+    except LostError as error:
+        active, weights, left, why = [], np.zeros(0), np.inf, why or f"it has no gradients there ({error})"
     if missed and not why:
         first = missed[0]
         why = (

@@ -63,9 +63,15 @@ class Way:
             values=others,
             watch=Watch(peaks={}),
         )
-        run.search = False
         point = next(run, None)
         return None if point is None or point.label is Label.FAILED else point
+
+    def changes(self, orbit: Orbit, pick: Mapping[str, Condition], name: str) -> Changes:
+        """Return how an orbit changes with each parameter. Raises LostError where it does not meet them."""
+        try:
+            return Changes.of(self.system, orbit, {**self.determined, **pick})
+        except (ArithmeticError, ValueError) as error:
+            raise LostError(f"{name}: {error}") from error
 
     def _held(
         self, orbit: Orbit, values: Mapping[str, float], pick: Mapping[str, Condition]
@@ -119,15 +125,15 @@ class Feature:
 
     @cached_property
     def changes(self) -> Changes:
-        """How the orbit changes with each parameter. Raises LostError where its equations are not met."""
-        try:
-            return Changes.of(self.way.system, self.orbit, {**self.way.determined, **self.pick})
-        except (ArithmeticError, ValueError) as error:
-            raise LostError(f"{self.name}: {error}") from error
+        """How the orbit changes with each parameter. Raises LostError."""
+        return self.way.changes(self.orbit, self.pick, self.name)
 
     @cached_property
     def gradient(self) -> dict[str, float]:
-        """Derivatives of the number in every parameter that is not determined (SI), by name."""
+        """Derivatives of the number in every parameter that is not determined (SI), by name.
+
+        Raises LostError.
+        """
         return self.changes.rates(self.functional)
 
     def at(self, values: Mapping[str, float]) -> Feature:

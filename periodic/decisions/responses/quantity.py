@@ -5,6 +5,7 @@ Each knows the features that it is made of, so that it can be followed as parame
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -18,9 +19,8 @@ from periodic.conditions.levels import Peak
 from periodic.conditions.twoparameter.augmented import DoublingCondition, FoldCondition, TorusCondition
 from periodic.conditions.twoparameter.grazing import GrazingCondition
 from periodic.correction.condition import Condition, Given
-from periodic.decisions.responses.feature import Feature, Way
+from periodic.decisions.responses.feature import Count, Feature, Way
 from periodic.decisions.responses.words import called
-from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.results.branch import Branch
 from periodic.results.point import Point
@@ -51,30 +51,31 @@ class ResponseLike(Protocol):
         system: System,
         values: Mapping[str, float],
         peaks: Mapping[str, Functional] | None = None,
-        guess: Orbit | None = None,
         at: Sequence[float] = (),
     ) -> Branch: ...
+    def way(self, system: System, count: Count) -> Way: ...
 
 
-class Quantity(Protocol):
+class Quantity(ABC):
     """A number of a response; `q <= 1.0` and `q >= 1.0` are constraints."""
 
-    @property
-    def response(self) -> ResponseLike:
-        """The branch that it is of."""
+    response: ResponseLike
+    """The branch that it is of."""
 
-    @property
-    def sign(self) -> float:
-        """1 where the largest of the features' values counts, -1 where the least does."""
+    sign: float = 1.0
+    """1 where the largest of the features' values counts, -1 where the least does."""
 
     @property
     def peaks(self) -> tuple[Smooth, ...]:
         """Functionals whose stationary places along the branch are to be located."""
+        return ()
 
     @property
     def places(self) -> tuple[float, ...]:
         """Values of the parameter at which points are needed."""
+        return ()
 
+    @abstractmethod
     def features(self, way: Way, branch: Branch) -> list[Feature]:
         """Return what it is made of on a branch.
 
@@ -95,6 +96,27 @@ class Quantity(Protocol):
         AbsentError
             For a branch that does not have it.
         """
+
+    def decisive(self, features: Sequence[Feature]) -> Feature:
+        """Return the feature that gives it its value: of the largest, or the least.
+
+        Parameters
+        ----------
+        features : sequence of Feature
+            What it is made of.
+
+        Returns
+        -------
+        Feature
+            One of them.
+        """
+        return max(features, key=lambda feature: self.sign * feature.value)
+
+    def __le__(self, bound: float) -> Constraint:
+        return Constraint(self, _finite(bound), 1.0)
+
+    def __ge__(self, bound: float) -> Constraint:
+        return Constraint(self, _finite(bound), -1.0)
 
 
 @dataclass(frozen=True)
@@ -119,25 +141,14 @@ class Constraint:
         return f"{self.quantity} {'<=' if self.side > 0 else '>='} {self.bound:g}"
 
 
-class Comparable:
-    """What makes `quantity <= bound` a constraint."""
-
-    def __le__(self, bound: float) -> Constraint:
-        return Constraint(self, _finite(bound), 1.0)  # type: ignore[arg-type]
-
-    def __ge__(self, bound: float) -> Constraint:
-        return Constraint(self, _finite(bound), -1.0)  # type: ignore[arg-type]
-
-
 @dataclass(frozen=True)
-class Extreme(Comparable):
+class Extreme(Quantity):
     """The highest (sign 1) or lowest (-1) value of a functional along a branch."""
 
     response: ResponseLike
     functional: Smooth
     sign: float
     stable: bool = False
-    places = ()
 
     def __str__(self) -> str:
         return f"{'highest' if self.sign > 0 else 'lowest'} {called(self.functional)}"
@@ -149,44 +160,44 @@ class Extreme(Comparable):
 
     def features(self, way: Way, branch: Branch) -> list[Feature]:
         """Return the stationary places, the ends of the branch, and corners that are higher than beside."""
+        name = self.response.parameter
+        if any(stop.reason.numerical for stop in branch.stops):
+            raise AbsentError(f"the branch over {name} stopped early: {branch.ending}")
         values = np.array([self.sign * float(self.functional(way.system, p.orbit)) for p in branch])
         counts = np.array([not self.stable or p.stable or p.label.critical for p in branch])
         found = []
         for k, point in enumerate(branch):
             pick = self._pick(way.system, branch, values, k) if counts[k] else None
             if pick is not None:
-                place = f"at {self.response.parameter} = {point.parameter:.6g}"
-                named = f"{self} {place}"
+                named = f"{self} at {name} = {point.parameter:.6g}"
                 found.append(Feature(way, point, self.functional, pick, named, self.response.bounds))
         if not found:
             kind = "stable motion" if self.stable else "peak"
-            raise AbsentError(f"the branch over {self.response.parameter} has no {kind}: {branch.ending}")
+            raise AbsentError(f"the branch over {name} has no {kind}: {branch.ending}")
         return found
 
     def _pick(self, system: System, branch: Branch, values: Array, k: int) -> dict[str, Condition] | None:
         """The conditions at point k if its value may be the extreme one; None if not."""
         point, name = branch[k], self.response.parameter
         inside = 0 < k < len(branch) - 1
-        if point.label == Label.PEAK and values[k] >= max(values[k - 1], values[k + 1]):
+        if not inside:
+            return {} if point.parameter in self.response.bounds else None
+        beside = max(values[k - 1], values[k + 1])
+        if point.label == Label.PEAK and values[k] >= beside:
             return {name: Peak(self.functional)}
-        higher = inside and values[k] > max(values[k - 1], values[k + 1])
         ends = self.stable and point.label.critical and (branch[k - 1].stable or branch[k + 1].stable)
-        if inside and point.label in CONDITIONS and (higher or ends):
-            return {name: CONDITIONS[point.label](system, point)}
-        return {} if not inside and point.parameter in self.response.bounds else None
+        held = point.label in CONDITIONS and (values[k] > beside or ends)
+        return {name: CONDITIONS[point.label](system, point)} if held else None
 
 
 @dataclass(frozen=True)
-class SpecialPoint(Comparable):
+class SpecialPoint(Quantity):
     """The parameter, or a functional, at a special point of a branch."""
 
     response: ResponseLike
     label: str
     which: int = 0
     functional: Smooth | None = None
-    sign = 1.0
-    peaks = ()
-    places = ()
 
     def __post_init__(self) -> None:
         if self.label not in CONDITIONS:
@@ -211,15 +222,13 @@ class SpecialPoint(Comparable):
 
 
 @dataclass(frozen=True)
-class AtValue(Comparable):
+class AtValue(Quantity):
     """A functional of one of the motions at a value of the parameter."""
 
     response: ResponseLike
     value: float
     functional: Smooth
     sheet: int = 0
-    sign = 1.0
-    peaks = ()
 
     def __str__(self) -> str:
         return f"{called(self.functional)} at {self.response.parameter} = {self.value:g}"

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from typing import Any
 
-from periodic.checks import named, number, one_of, shown, whole
+from periodic.checks import named, number, shown, whole
 from periodic.conditions.functionals import Functional, output_index
 from periodic.conditions.levels import smooth
 from periodic.correction.condition import Condition
@@ -160,7 +160,6 @@ class Response:
         system: System,
         values: Mapping[str, float],
         peaks: Mapping[str, Functional] | None = None,
-        guess: Orbit | None = None,
         at: Sequence[float] = (),
     ) -> Branch:
         """Return the branch at given values of further parameters (SI).
@@ -173,8 +172,6 @@ class Response:
             Parameters by name, besides those of the response.
         peaks : mapping of str to Functional, optional
             Functionals whose stationary places get points, by name.
-        guess : Orbit, optional
-            An orbit to start from, in place of the response's.
         at : sequence of float
             Values of the parameter that get points.
 
@@ -189,8 +186,8 @@ class Response:
             Where a parameter is both free and given, and for what `trace` refuses.
         """
         for functional in (peaks or {}).values():
-            if isinstance(getattr(functional, "output", None), str):
-                output_index(system, functional.output)  # type: ignore[attr-defined]
+            if isinstance(output := getattr(functional, "output", None), str):
+                output_index(system, output)
         for name in set(values) & {*self.values, self.parameter}:
             raise ValueError(f"{name} is free, and also given by the response; it must be one or the other")
         return trace(
@@ -199,7 +196,7 @@ class Response:
             self.bounds,
             start=self.start,
             tol=self.tol,
-            guess=self.guess if guess is None else guess,
+            guess=self.guess,
             values={**self.values, **values},
             determined=self.determined,
             method=self.method,
@@ -207,9 +204,3 @@ class Response:
             at=at,
             watch=Watch(peaks=peaks or {}),
         )
-
-
-def known(system: System, names: Mapping[str, Any]) -> None:
-    """Raise ValueError for a name that is no parameter of the system."""
-    for name in names:
-        one_of("a free parameter", name, [p.name for p in system.parameters])

@@ -20,7 +20,7 @@ import numpy as np
 from periodic.checks import named, one_of, shown, whole
 from periodic.decisions.responses.feature import Count, LostError
 from periodic.decisions.responses.quantity import AbsentError, Quantity
-from periodic.decisions.responses.reading import Reading, traced
+from periodic.decisions.responses.readquantities import Reading, traced
 from periodic.decisions.scattering.scattered import Quadratic, Scattered, drawn
 from periodic.display.meter import meter
 from periodic.orbit.scheme import Array
@@ -59,7 +59,7 @@ def scatter(
     quantities : mapping of str to Quantity
         {"peak": response.highest(PeakToPeak("x")), "jump": response.place("LP")}.
     samples : int
-        Number of sampled designs (of a scrambled Sobol sequence).
+        Number of sampled designs (of a Latin hypercube).
     seed : int
         Of the samples.
 
@@ -71,13 +71,13 @@ def scatter(
     Raises
     ------
     ValueError
-        In one sentence, for what is not allowed, and where the response has nothing of what is asked at the
-        means of the parameters.
+        In one sentence, for what is not allowed, and where the response has nothing of what is asked, or no
+        derivatives of it, at the means of the parameters.
     """
     check_system(system)
     names = _checked(system, scattered)
     named("quantities", quantities, "quantities")
-    if not quantities or not all(hasattr(quantity, "features") for quantity in quantities.values()):
+    if not quantities or not all(isinstance(q, Quantity) for q in quantities.values()):
         raise ValueError(
             f"quantities is {shown(quantities)}; it must name quantities, as response.highest(...)"
         )
@@ -87,13 +87,17 @@ def scatter(
     except AbsentError as error:
         raise ValueError(f"at the means of the parameters {error}") from None
     points = drawn(draws.distributions, whole("samples", samples, 2), whole("seed", seed, 0))
+    try:
+        surrogates = tuple(draws.quadratics(middle))
+    except LostError as error:
+        raise ValueError(f"at the means of the parameters there are no derivatives of {error}") from None
     found, apart = draws.sampled(middle, points)
     return Scattered(
         distributions={name: scattered[name] for name in names},
         labels=tuple(quantities),
         quantities=tuple(quantities.values()),
         middle=middle.numbers,
-        surrogates=tuple(draws.quadratics(middle)),
+        surrogates=surrogates,
         points=points,
         values=found,
         apart=apart,
@@ -183,8 +187,12 @@ class _Draws:
         return np.array(found), apart
 
     def quadratics(self, middle: Reading) -> Iterator[tuple[Quadratic, ...]]:
-        """Yield for each quantity its features to second order."""
-        size, centre = len(self.names), self._slopes(middle)
+        """Yield for each quantity its features to second order. Raises LostError.
+
+        A feature that is lost on one side of the means has a one-sided difference of its gradients; of one
+        that is lost on both the curvature is not known.
+        """
+        centre = self._slopes(middle)
         ends = [
             [self._moved(middle, self.means + side * step) for side in (1.0, -1.0)]
             for step in np.diag(self.deviations)
@@ -192,12 +200,12 @@ class _Draws:
         for q, features in enumerate(middle.features):
             each = []
             for f, feature in enumerate(features):
-                rows = [
-                    (plus[q][f] - minus[q][f]) / (2 * step) if plus and minus else np.zeros(size)
-                    for (plus, minus), step in zip(ends, self.deviations, strict=True)
-                ]
-                curved = np.array(rows)
-                each.append(Quadratic(feature.value, self.means, centre[q][f], (curved + curved.T) / 2))
+                own = centre[q][f]
+                sides = [[(None if end is None else end[q][f]) for end in pair] for pair in ends]
+                rows = [_curved(own, pair, h) for pair, h in zip(sides, self.deviations, strict=True)]
+                curved = None if any(row is None for row in rows) else np.array(rows)
+                symmetric = None if curved is None else (curved + curved.T) / 2
+                each.append(Quadratic(feature.value, self.means, own, symmetric))
             yield tuple(each)
 
     def _moved(self, middle: Reading, design: Array) -> list[list[Array]] | None:
@@ -225,6 +233,15 @@ class _Draws:
             return None
         mean = weights @ found
         return mean, np.sqrt(weights @ (found - mean) ** 2)
+
+
+def _curved(centre: Array, pair: Sequence[Array | None], step: float) -> Array | None:
+    """The derivative of a gradient in a parameter, from those a step to either side, or to one."""
+    plus, minus = pair
+    if plus is None and minus is None:
+        return None
+    first, last = (centre if minus is None else minus), (centre if plus is None else plus)
+    return (last - first) / (step * (2 - (plus is None or minus is None)))
 
 
 def _gauss(distribution: Any) -> tuple[Array, Array]:

@@ -27,17 +27,18 @@ CONFIDENCE = 0.95
 
 @dataclass(frozen=True)
 class Quadratic:
-    """A feature to second order about a design m: f + g d + d' H d / 2, d = p - m."""
+    """A feature to second order about a design m: f + g d + d' H d / 2, d = p - m; H may not be known."""
 
     value: float
     centre: Array
     gradient: Array
-    curvature: Array
+    curvature: Array | None
 
     def __call__(self, designs: Array) -> Array:
         """Return its values at designs of shape (N, n)."""
-        d = designs - self.centre
-        return self.value + d @ self.gradient + 0.5 * np.einsum("ij,jk,ik->i", d, self.curvature, d)
+        d, curvature = designs - self.centre, self.curvature
+        assert curvature is not None  # as `curved` tells
+        return self.value + d @ self.gradient + 0.5 * np.einsum("ij,jk,ik->i", d, curvature, d)
 
 
 def drawn(distributions: Sequence[Any], count: int, seed: int) -> Array:
@@ -157,7 +158,7 @@ class Scattered:
         tuple of float
             Mean and deviation.
         """
-        found = self._expanded[self._index(label)]
+        found = self._second_order(label)
         return float(found.mean()), float(found.std())
 
     def shares(self, label: str) -> dict[str, float]:
@@ -216,7 +217,7 @@ class Scattered:
         float
             The quantile.
         """
-        return float(np.quantile(self._expanded[self._index(label)], between("part", part, 0.0, 1.0)))
+        return float(np.quantile(self._second_order(label), between("part", part, 0.0, 1.0)))
 
     def probability(self, *events: Constraint) -> Estimate:
         """Return the probability that constraints are all met, by the samples.
@@ -277,12 +278,14 @@ class Scattered:
             The axes.
         """
         name = self.labels[0] if label is None else label
-        sampled, expanded = self.samples(name), np.sort(self._expanded[self._index(name)])
+        sampled = self.samples(name)
         found = np.sort(sampled[np.isfinite(sampled)])
         axes = fresh(axes)
         parts = (np.arange(len(found)) + 0.5) / len(sampled)
         axes.step(found, parts, where="mid", label=f"{len(sampled)} samples")
-        axes.plot(expanded, (np.arange(len(expanded)) + 0.5) / len(expanded), label="to second order")
+        if self._is_curved(self._index(name)):
+            expanded = np.sort(self._second_order(name))
+            axes.plot(expanded, (np.arange(len(expanded)) + 0.5) / len(expanded), label="to second order")
         axes.set(ylabel="probability of no more", ylim=(0, 1))
         axes.set_xlabel(f"{name}: {self.quantities[self._index(name)]}", parse_math=False)
         axes.legend()
@@ -310,6 +313,8 @@ class Scattered:
         rows = [head, *(self._row(k) for k in range(len(self.labels)))]
         widths = [max(len(row[i]) for row in rows) for i in range(len(head))]
         lines = ["  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in rows]
+        flat = [label for k, label in enumerate(self.labels) if not self._is_curved(k)]
+        lines += [f"{label}: to second order not known, as it is lost beside the means" for label in flat]
         gone = [f"{label}: {self.absent(label):.1%} of the samples do not have it" for label in self.labels]
         return "\n".join(
             [*lines, *(text for text, label in zip(gone, self.labels, strict=True) if self.absent(label))]
@@ -333,12 +338,24 @@ class Scattered:
             label,
             f"{self.middle[k]:.5g}",
             _pair(*self.first_order(label)),
-            _pair(*self.second_order(label)),
+            _pair(*self.second_order(label)) if self._is_curved(k) else "",
             by_quadrature,
             *sampled,
             last,
             f"{first} ({shares[first]:.0%})",
         ]
+
+    def _is_curved(self, k: int) -> bool:
+        """Whether all features of a quantity are known to second order."""
+        return all(feature.curvature is not None for feature in self.surrogates[k])
+
+    def _second_order(self, label: str) -> Array:
+        """A quantity by its expansions at many designs. Raises ValueError where they are not known."""
+        k = self._index(label)
+        if not self._is_curved(k):
+            raise ValueError(f"label is {label!r}, which is lost beside the means; samples({label!r}) has it")
+        each = np.array([feature(self._many) for feature in self.surrogates[k]])
+        return np.asarray(each.max(axis=0) if self.quantities[k].sign > 0 else each.min(axis=0))
 
     @property
     def _deviations(self) -> Array:
@@ -349,14 +366,9 @@ class Scattered:
         return max(self.surrogates[k], key=lambda feature: sign * feature.value)
 
     @cached_property
-    def _expanded(self) -> Sequence[Array]:
-        """The quantities by their expansions at many points."""
-        points = drawn(list(self.distributions.values()), SURROGATE, 0)
-        found = []
-        for quantity, features in zip(self.quantities, self.surrogates, strict=True):
-            each = np.array([feature(points) for feature in features])
-            found.append(each.max(axis=0) if quantity.sign > 0 else each.min(axis=0))
-        return found
+    def _many(self) -> Array:
+        """Designs at which expansions are read."""
+        return drawn(list(self.distributions.values()), SURROGATE, 0)
 
     def _index(self, label: str) -> int:
         return self.labels.index(one_of("label", label, self.labels))

@@ -8,8 +8,9 @@ from typing import Protocol
 import numpy as np
 
 import periodic as per
-from periodic.decisions.modes import RATIO
+from periodic.decisions.modebranch import RATIO
 from periodic.results.betweenpoints import PER_SEGMENT, smooth
+from periodic.results.plots.labels import placed
 
 from ..drawing import BLUE, INK, figure, write
 
@@ -39,7 +40,7 @@ def draw(path: Path, found: FoundLike) -> None:
         if point.label.value not in ("", "EP", "UZ"):
             for axes, y in ((upper, w), (lower, point.columns[RATIO])):
                 axes.plot(x, y, "o", color=INK, markersize=5, zorder=5)
-            upper.annotate(point.label.value, (x, w), xytext=(4, 4), textcoords="offset points")
+            placed(upper).add(f"{point.label.value}\n{x:.5g}", (x, w))
     upper.set(ylabel=found.headings[1])
     lower.set(xlabel=found.headings[0], ylabel=RATIO)
     for axes in (upper, lower):

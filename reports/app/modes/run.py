@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import periodic as per
-from periodic.decisions.modes import LOSS, RATIO
+from periodic.decisions.modebranch import LOSS, RATIO
 from periodic.results.textcell import text_cell
 from symbolic.scenes.building import build
 from symbolic.scenes.errors import InputError, refused
@@ -110,8 +110,8 @@ def _largest(task: Task, system: per.extend.System, output: str) -> float:
         )
     except per.Interrupted:
         raise KeyboardInterrupt from None
-    if not len(branch):
-        raise InputError("--to", "is not given", f"and the scene's response has no motion ({branch.ending})")
+    if any(stop.reason.numerical for stop in branch.stops):
+        raise InputError("--to", "is not given", f"and the scene's response stopped early ({branch.ending})")
     return float(np.max(branch.column("amplitude")))
 
 

@@ -46,10 +46,8 @@ def fitted(key: str, seed: int) -> dict[str, Any]:
     return row
 
 
-def several(key: str, seeds: list[int], exact: np.ndarray) -> list[dict[str, Any]]:
-    """Return the rows of several sets; `exact` are the amplitudes, which need not be integrated again."""
-    truth = next(each for each in TRUTHS if each.key == key)
-    vars(truth)["exact"] = exact
+def several(key: str, seeds: list[int]) -> list[dict[str, Any]]:
+    """Return the rows of several sets."""
     return [fitted(key, seed) for seed in seeds]
 
 
@@ -76,11 +74,10 @@ class Coverage:
         )
 
     def _compute(self, tell: Tell) -> Found:
-        exact = self.truth.exact
         chunks = [list(range(k, min(k + CHUNK, self.sets))) for k in range(0, self.sets, CHUNK)]
         rows: list[dict[str, Any]] = []
         with ProcessPoolExecutor(min(2, os.cpu_count() or 1)) as pool:
-            for found in pool.map(several, [self.key] * len(chunks), chunks, [exact] * len(chunks)):
+            for found in pool.map(several, [self.key] * len(chunks), chunks):
                 rows += found
                 tell(f"{self.truth.scene}: {len(rows)} of {self.sets} sets")
         names = list(self.truth.hidden)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from reports.studies.decide.coverage import COVERAGE
 from reports.studies.decide.designs import SECTION as DESIGNS
-from reports.studies.decide.modes import ANCHORS, DISC
+from reports.studies.decide.freevibrations import ANCHORS, DISC
 from reports.studies.pages.page import Page
 
 REPORT = Page(

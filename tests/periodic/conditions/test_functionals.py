@@ -169,7 +169,9 @@ def test_fourier_series_have_no_exact_derivatives() -> None:
 
 def test_level_must_be_a_number() -> None:
     """Assert the sentence about a level that is none."""
-    with pytest.raises(ValueError, match="value of a Level is nan; it must be a finite number"):
+    with pytest.raises(
+        ValueError, match="value of a Level is nan; it must be a finite number, or a parameter's name"
+    ):
         per.Level(per.Maximum("x"), math.nan)
 
 

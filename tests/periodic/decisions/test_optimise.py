@@ -9,6 +9,7 @@ from scipy.optimize import minimize, minimize_scalar
 
 import periodic as per
 import symbolic as sym
+from reports.studies.decide.designs import absorber
 
 SWING = per.PeakToPeak("x")
 LIMIT = {"F_slider": (0.09, 0.25)}
@@ -18,15 +19,6 @@ RANGE = (0.9, 1.4)
 def damper() -> sym.CompiledSystem:
     """The friction damper of the scenes."""
     return sym.scene("jenkins-damper")
-
-
-def absorber() -> sym.CompiledSystem:
-    """A cubic oscillator with an absorber of a twentieth of its mass (Habib et al. 2015)."""
-    x, y, p = sym.coordinate("x"), sym.coordinate("y"), sym.Parameter
-    own = sym.Mass(x, 1.0) + sym.Spring(x, p("k1", 1.0)) + sym.Damper(x, p("c1", 0.002))
-    own += sym.CubicSpring(x, p("knl1", 1.0)) + sym.HarmonicForce(x, p("F", 0.05), p("Omega", 0.6))
-    other = sym.Mass(y, 0.05) + sym.Spring(y, p("k2", 0.045), to=x) + sym.Damper(y, p("c2", 0.0128), to=x)
-    return sym.compile(own + other + sym.CubicSpring(y, p("knl2", 0.00416667), to=x))
 
 
 def highest(system: sym.CompiledSystem, values: dict[str, float], bounds: tuple[float, float]) -> float:
@@ -124,7 +116,7 @@ def test_what_cannot_be_met_is_said() -> None:
 def test_gradients_are_those_of_differences() -> None:
     """Assert gradients of peaks and folds to 1e-6 of central differences of features found anew."""
     from periodic.decisions.responses.feature import Count
-    from periodic.decisions.responses.reading import traced
+    from periodic.decisions.responses.readquantities import traced
 
     response = per.Response("Omega", (0.5, 2.6), tol=1e-9)
     quantities = [response.highest(SWING), response.place("LP"), response.at(1.0, SWING)]
@@ -182,3 +174,10 @@ def test_bad_responses() -> None:
         per.optimise(sym.scene("duffing"), {"c": (0.1, 0.2)}, minimise=response.highest(per.PeakToPeak("y")))
     with pytest.raises(ValueError, match="sheet is 4; the branch has 1 motions at 1"):
         per.optimise(sym.scene("duffing"), {"c": (0.1, 0.2)}, minimise=response.at(1.0, SWING, sheet=4))
+
+
+def test_a_branch_that_stopped_early_has_no_highest_peak() -> None:
+    """Assert that the highest of the peaks before the end of a branch that was cut short is not taken."""
+    few = per.Response("Omega", (0.5, 2.6), control=per.ArclengthControl(max_points=5))
+    with pytest.raises(ValueError, match="at the start the branch over Omega stopped early: largest number"):
+        per.optimise(sym.scene("duffing"), {"c": (0.1, 0.2)}, minimise=few.highest(SWING))

@@ -10,7 +10,7 @@ from scipy import stats
 
 import periodic as per
 import symbolic as sym
-from periodic.decisions.scattering.scatter import _gauss
+from periodic.decisions.scattering.scatter import _curved, _gauss
 
 X = sym.coordinate("x")
 SWING = per.PeakToPeak("x")
@@ -73,7 +73,6 @@ def test_a_jump_that_not_every_machine_has() -> None:
     """Assert that folds that vanish at a cusp are counted as absent, by traces at the same designs."""
     system, response = sym.scene("duffing"), per.Response("Omega", (0.5, 2.6))
     jump = response.place("LP")
-    damping = stats.norm(0.3, 0.1)
     found = per.scatter(system, {"c": stats.truncnorm(-2, 2, 0.3, 0.1)}, {"jump": jump}, samples=40)
     there = np.isfinite(found.samples("jump"))
     assert 0 < found.absent("jump") < 1
@@ -82,7 +81,15 @@ def test_a_jump_that_not_every_machine_has() -> None:
         assert bool(branch.labelled("LP")) == bool(has)
     assert found.probability(jump >= 0.0).value == pytest.approx(1 - found.absent("jump"))
     assert "do not have it" in found.table()
-    assert damping.std() == pytest.approx(0.1)
+
+
+def test_curvature_from_one_side_or_none() -> None:
+    """Assert differences of gradients to both sides, to one, and that of neither nothing is said."""
+    centre, up, down = np.array([1.0, 2.0]), np.array([1.5, 2.5]), np.array([0.5, 1.5])
+    assert _curved(centre, (up, down), 0.5) == pytest.approx([1.0, 1.0])
+    assert _curved(centre, (up, None), 0.5) == pytest.approx([1.0, 1.0])
+    assert _curved(centre, (None, down), 0.5) == pytest.approx([1.0, 1.0])
+    assert _curved(centre, (None, None), 0.5) is None
 
 
 def test_quadrature_is_gauss() -> None:

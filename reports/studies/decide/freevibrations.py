@@ -12,7 +12,7 @@ from scipy.special import ellipk
 
 import periodic as per
 import symbolic as sym
-from periodic.decisions.modes import LOSS, RATIO
+from periodic.decisions.modebranch import LOSS, RATIO
 from periodic.results.betweenpoints import PER_SEGMENT, smooth
 from reports.studies.pages.content import Found, Kept, Section, Tell
 

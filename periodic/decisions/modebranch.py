@@ -22,6 +22,7 @@ from typing import Any, ClassVar, cast
 
 import numpy as np
 
+from periodic.bifurcations.hopf import oscillating
 from periodic.checks import named, number, one_of, shown, whole
 from periodic.collocation.collocation import Collocation
 from periodic.conditions.functionals import Amplitude, Component, Functional, Value, mean, output_index
@@ -30,8 +31,9 @@ from periodic.conditions.phase import PhaseCondition
 from periodic.correction.condition import Condition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.meanequilibrium import resting
+from periodic.correction.newton import moved
 from periodic.correction.tolerance import Accuracy, Tolerance
-from periodic.equilibrium.linearise import Rows, rows_at
+from periodic.equilibrium.linearise import rows_at
 from periodic.orbit.construction import constant
 from periodic.orbit.layout import layout_of
 from periodic.orbit.mesh import uniform
@@ -50,6 +52,9 @@ NTST = 24
 
 SETTLED = 1e-10
 """Relative change of a linear mode's frequency at which it is taken for its own."""
+
+STILL = 1e-9
+"""Amplitude of an output, in parts of the largest scaled state, below which a mode does not move it."""
 
 RATIO, LOSS = "damping ratio", "energy per period"
 """Names of the columns."""
@@ -286,46 +291,35 @@ def linear_mode(
         parameter[index] = value
     paced = index_of(free, frequency)
     for _ in range(MOST_ITERATIONS):  # a film, say, has another thickness at the mode's own speed
-        rest, rows, turn, vector = _linear(free, parameter, which)
+        rest, turn = _linear(free, parameter, which)
         parameter[paced] *= turn.imag
         if abs(turn.imag - 1) < SETTLED:
             break
-    omega = replace(rest, parameter=parameter).omega
-    parameter[index_of(free, DAMPING)] = -2 * omega * turn.real
+    origin = replace(rest, parameter=parameter)
+    parameter[index_of(free, DAMPING)] = -2 * origin.omega * turn.real
     parameter[index_of(free, SIZE)] = amplitude
-    unknowns = rows.unknowns @ vector
-
-    def turning(size: float) -> Orbit:
-        def wave(v: Any, tau: Array) -> Array:
-            return size * (np.exp(1j * tau)[..., None] * v).real
-
-        return replace(
-            rest,
-            nodes=rest.nodes[0] + wave(vector, rest.mesh.nodes(rest.phases)),
-            stages=rest.nodes[0] + wave(vector, rest.stage_phases),
-            algebraic=rest.algebraic[0, 0] + wave(unknowns, rest.stage_phases),
-            parameter=parameter,
-        )
-
-    unit = Amplitude(output)(free, turning(1.0))
-    if not unit > 1e-9 * float(np.abs(vector).max()):
+    way = replace(oscillating(free, rest, rest, turn), parameters=np.zeros(0))
+    unit = Amplitude(output)(free, moved(free, (), origin, way))
+    if not unit > STILL * float(np.abs(way.nodes).max()):
         raise ValueError(
             f"output is {output!r}, which does not move in mode {which}; it must be one that does"
         )
-    return turning(amplitude / unit)
+    return moved(free, (), origin, way, amplitude / unit)
 
 
-def _linear(free: System, parameter: Array, which: int) -> tuple[Orbit, Rows, complex, Any]:
-    """Rest, the linear system there, and eigenvalue (per unit of tau) and eigenvector of a mode."""
+def _linear(free: System, parameter: Array, which: int) -> tuple[Orbit, complex]:
+    """Rest, and the eigenvalue (per unit of tau) of a mode there. Raises ValueError."""
     state, algebraic = free.rest(parameter)
     rest = constant(uniform(Scheme(), NTST), state, algebraic, parameter.copy(), layout_of(free))
     rest = resting(free, rest) or rest
-    rows = rows_at(free, rest, ())
-    values, vectors = np.linalg.eig(rows.jacobian)
-    order = [k for k in np.argsort(values.imag, kind="stable") if values[k].imag > 0]
-    if which >= len(order):
-        raise ValueError(f"which is {which}; the system at rest has {len(order)} modes that vibrate")
-    return rest, rows, complex(values[order[which]]), vectors[:, order[which]]
+    try:
+        values = np.linalg.eigvals(rows_at(free, rest, ()).jacobian)
+    except (ArithmeticError, np.linalg.LinAlgError) as error:
+        raise ValueError(f"the system at rest has no linear modes ({error}); guess must be given") from None
+    vibrating = sorted((complex(v) for v in values if v.imag > 0), key=lambda value: value.imag)
+    if which >= len(vibrating):
+        raise ValueError(f"which is {which}; the system at rest has {len(vibrating)} modes that vibrate")
+    return rest, vibrating[which]
 
 
 def _amplitudes(given: Any) -> tuple[float, float]:

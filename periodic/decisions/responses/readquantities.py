@@ -5,11 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
+from periodic.conditions.extremes import PeakToPeak
+from periodic.conditions.functionals import Smooth
 from periodic.decisions.responses.feature import Count, Feature
 from periodic.decisions.responses.quantity import Quantity
+from periodic.decisions.responses.words import called
 from periodic.results.branch import Branch
+from periodic.results.peaks import PEAK_OF
 from periodic.system import System
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -41,10 +48,8 @@ class Reading:
     @cached_property
     def decisive(self) -> tuple[Feature, ...]:
         """The feature that gives each quantity its value: of the largest value, or the least."""
-        return tuple(
-            max(each, key=lambda feature, sign=quantity.sign: sign * feature.value)  # type: ignore[misc]
-            for quantity, each in zip(self.quantities, self.features, strict=True)
-        )
+        both = zip(self.quantities, self.features, strict=True)
+        return tuple(quantity.decisive(features) for quantity, features in both)
 
     @property
     def numbers(self) -> tuple[float, ...]:
@@ -57,7 +62,6 @@ def traced(
     quantities: Sequence[Quantity],
     values: Mapping[str, float],
     count: Count,
-    before: Reading | None = None,
 ) -> Reading:
     """Return quantities read off branches that are traced, each response once.
 
@@ -68,7 +72,7 @@ def traced(
     for response in _once(quantity.response for quantity in quantities):
         own = [(k, q) for k, q in enumerate(quantities) if q.response is response]
         functionals = _once(functional for _, quantity in own for functional in quantity.peaks)
-        peaks = {f"peak {i}": functional for i, functional in enumerate(functionals)}
+        peaks = {_peak(functional): functional for functional in functionals}
         places = sorted({place for _, quantity in own for place in quantity.places})
         branch = response.traced(system, values, peaks, at=places)
         count.orbits += len(branch)
@@ -78,9 +82,15 @@ def traced(
     return Reading(dict(values), quantities, [features[k] for k in range(len(quantities))], branches)
 
 
-def _once(items: Iterable) -> list:
+def _peak(functional: Smooth) -> str:
+    """What the places where a functional is stationary are called, as those of other branches are."""
+    of = functional.output if isinstance(functional, PeakToPeak) else called(functional)
+    return f"{PEAK_OF}{of}"
+
+
+def _once(items: Iterable[T]) -> list[T]:
     """Each of several objects once, in order."""
-    found: list = []
+    found: list[T] = []
     for item in items:
         if not any(item is other or item == other for other in found):
             found.append(item)
