@@ -1,6 +1,6 @@
 """Periodic orbits: collocation, continuation, stability, special points. Knows only the `System` protocol."""
 
-from . import decisions, extend, maps, plots
+from . import decisions, extend, maps, phasespace, plots
 from .bifurcations.hopf import eigenvalues, hopf, normal_mode
 from .bifurcations.label import Label
 from .bifurcations.switching import SwitchError, branched, doubled
@@ -34,6 +34,9 @@ from .orbit.extrema import extrema, outputs
 from .orbit.orbit import Orbit
 from .orbit.sampling import sampled
 from .orbit.scheme import Family, Scheme
+from .phasespace.basins import basins
+from .phasespace.lyapunov import LyapunovError, lyapunov
+from .phasespace.motions import motions
 from .proof.proof import Proof, proved
 from .results.branch import Branch
 from .results.export.export import export
@@ -76,6 +79,7 @@ __all__ = [
     "KinkSettings",
     "Label",
     "Level",
+    "LyapunovError",
     "Maximum",
     "Measured",
     "MeasuredQuantity",
@@ -103,6 +107,7 @@ __all__ = [
     "TorusError",
     "Value",
     "Watch",
+    "basins",
     "branched",
     "continuation",
     "decisions",
@@ -115,15 +120,18 @@ __all__ = [
     "first_lyapunov",
     "fit",
     "hopf",
+    "lyapunov",
     "maps",
     "mean",
     "mode_branch",
     "motion",
+    "motions",
     "normal_mode",
     "optimise",
     "outputs",
     "page",
     "plot",
+    "phasespace",
     "plots",
     "points_at",
     "proved",

@@ -20,7 +20,18 @@ from periodic.correction.outcome import Outcome
 pytestmark = pytest.mark.gallery
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
-REFERENCE = ("parts", "symbolic", "films", "functions", "periodic", "plots", "maps", "decisions", "extend")
+REFERENCE = (
+    "parts",
+    "symbolic",
+    "films",
+    "functions",
+    "periodic",
+    "plots",
+    "maps",
+    "decisions",
+    "phasespace",
+    "extend",
+)
 PAGES = {str(file.relative_to(DOCS)): file for file in sorted(DOCS.glob("*/*.md"))}
 
 

@@ -12,6 +12,7 @@ Every system has what stands in `equations`; what a system may have besides is o
 from periodic.system.arrays import Array, Complex
 from periodic.system.compiler import Compiling, address_of, compiling
 from periodic.system.derivatives import Differentiable, GradientLike, differentiable
+from periodic.system.ensembles import EnsembleLike, Ensembling, FollowedLike
 from periodic.system.equations import (
     Checked,
     LinearisationLike,
@@ -58,7 +59,10 @@ __all__ = [
     "Complex",
     "Condensable",
     "Differentiable",
+    "EnsembleLike",
+    "Ensembling",
     "EventLike",
+    "FollowedLike",
     "FlowLike",
     "Flowing",
     "GradientLike",

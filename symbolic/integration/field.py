@@ -128,6 +128,26 @@ class VectorField:
             y = y - np.linalg.pinv(jacobian) @ rows.ravel()
         return y
 
+    def begun(self, y: Array, phase: float, parameter: Array) -> Array:
+        """Return (x, z) with the same states and unknowns that fulfil the constraints, from a guess of these.
+
+        By Newton's method in the unknowns alone; where that fails the nearest point (w,) that fulfils them.
+        Raises IntegrationError where there is none.
+        """
+        n, found = self.expressions.state.numel(), y.copy()
+        for _ in range(CONSTRAINT_ITERATIONS):
+            rows, jacobian = (np.array(a) for a in self._constraints(found, phase, parameter))
+            if not np.isfinite(jacobian).all() or not np.isfinite(rows).all():
+                break
+            if not rows.size or np.abs(rows).max() < FULFILLED:
+                return found
+            found[n:] -= np.linalg.pinv(jacobian[:, n:]) @ rows.ravel()
+        return self.on_constraints(y, phase, parameter)
+
+    def constraint_slope(self, y: Array, phase: float, parameter: Array) -> Array:
+        """Return the derivatives of the constraints in y, shape (m, w)."""
+        return np.array(self._constraints(y, phase, parameter)[1])
+
     @cached_property
     def _cvodes(self) -> Cvodes:
         return Cvodes({"x": self.y, "t": self.expressions.phase, "p": self.given, "ode": self.rates})
@@ -155,8 +175,13 @@ class VectorField:
         both = ca.horzcat(e.guards, along + ca.jacobian(e.guards, e.phase))
         return Buffered(ca.Function("guards", self._at, [ca.densify(both)]))
 
+    @property
+    def constraints(self) -> ca.SX:
+        """The rows without rates, (m,)."""
+        e = self.expressions
+        return ca.vertcat(ca.SX(0, 1), *[e.residual[i] for i in constraint_rows(e)])
+
     @cached_property
     def _constraints(self) -> ca.Function:
-        e = self.expressions
-        rows = ca.vertcat(ca.SX(0, 1), *[e.residual[i] for i in constraint_rows(e)])
+        e, rows = self.expressions, self.constraints
         return ca.Function("constraints", [self.y, e.phase, e.parameter], [rows, ca.jacobian(rows, self.y)])

@@ -71,7 +71,7 @@ class Flow:
             settle,
             n,
         )
-        start = settle(np.concatenate([state, algebraic]), float(phase[0]))
+        start = field.begun(np.concatenate([state, algebraic]), float(phase[0]), parameter)
         found = follower.run(start, phase, modes, earlier)
         tau, values = found.with_impacts(phase)
         return Trajectory(tau, values[:, :n], values[:, n:], found.events, found.modes)

@@ -85,6 +85,21 @@ def csource(function: ca.Function, names: Sequence[str], reads: Sequence[str]) -
     taken = [f"const double *restrict {name}" for name in names]
     filled = [f"double *restrict out{i}" for i in range(function.n_out())]
     places = [_places(function.sparsity_out(i)) for i in range(function.n_out())]
+    moving = ["i" in read.partition("[")[2] for read in reads]
+    once, each = statements(function, reads, moving, places)
+    signature = ", ".join(["ptrdiff_t points", *taken, *filled])
+    loop = ["for (ptrdiff_t i = 0; i < points; i++) {", *each, "}"]
+    return "\n".join([f"{HEAD}void kernel({signature}) {{", *once, *loop, "}", ""])
+
+
+def statements(
+    function: ca.Function, reads: Sequence[str], moving: Sequence[bool], places: Sequence[Sequence[str]]
+) -> tuple[list[str], list[str]]:
+    """Return a function's instructions as C: those that depend on no moving argument, and the others.
+
+    reads: how component {k} of each argument is read; places: where each result's nonzeros are written, what
+    follows ``out0``.
+    """
     once: list[str] = []
     each: list[str] = []
     values: dict[int, str] = {}
@@ -99,17 +114,15 @@ def csource(function: ca.Function, names: Sequence[str], reads: Sequence[str]) -
         else:
             if operation == ca.OP_INPUT:
                 text, given = reads[inputs[0]].format(k=inputs[1]), []
-                moving = "i" in text.partition("[")[2]
+                moves = moving[inputs[0]]
             else:
                 given = [values[i] for i in inputs]
-                text, moving = OPERATIONS[operation].format(*given), not varying.isdisjoint(given)
+                text, moves = OPERATIONS[operation].format(*given), not varying.isdisjoint(given)
             values[outputs[0]] = name = f"v{k}"
-            (each if moving else once).append(f"const double {name} = {text};")
-            if moving:
+            (each if moves else once).append(f"const double {name} = {text};")
+            if moves:
                 varying.add(name)
-    signature = ", ".join(["ptrdiff_t points", *taken, *filled])
-    loop = ["for (ptrdiff_t i = 0; i < points; i++) {", *each, "}"]
-    return "\n".join([f"{HEAD}void kernel({signature}) {{", *once, *loop, "}", ""])
+    return once, each
 
 
 def _places(sparsity: ca.Sparsity) -> list[str]:

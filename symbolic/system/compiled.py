@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import pickle
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -12,9 +13,13 @@ from symbolic.checks import numbers, one_of, refusal, typed
 from symbolic.equations.surfaces import Surface
 from symbolic.equations.tex.rows import equations
 from symbolic.equations.variables import Variable
+from symbolic.integration.ensembles.ensemble import Ensemble, code
 from symbolic.integration.field import VectorField
 from symbolic.integration.flow import Flow, Trajectory
 from symbolic.integration.sensitivity import SensitiveFlow, Sensitivities
+from symbolic.interrupts import interruptible
+from symbolic.kernels import native
+from symbolic.kernels.choice import Kernels
 from symbolic.structures.linearpart import Held, LinearPart, Modes
 from symbolic.structures.rowspart import RowsPart
 from symbolic.system.angularfrequency import AngularFrequency
@@ -234,6 +239,17 @@ class CompiledSystem(Evaluated):
         """Integrate, through impacts too: see `periodic.system.Moving`. Raises ArithmeticError."""
         earlier = None if modes is None else tuple(modes)
         return Flow(self, tolerance).run(state, algebraic, parameter, phase, earlier=earlier)
+
+    def ensemble(self, parameter: Array, tolerance: float, largest: float) -> Ensemble | None:
+        """Follow many motions at once: see `periodic.system.Ensembling`. None without a compiler."""
+        found = self._motions
+        return None if found is None else Ensemble(self, parameter, tolerance, largest, found)
+
+    @cached_property
+    @interruptible()
+    def _motions(self) -> ctypes.CDLL | None:
+        """The loaded library of the system's motions."""
+        return None if self.kernels is Kernels.NUMPY else native.attempted(code(self))
 
     @cached_property
     def field(self) -> VectorField:

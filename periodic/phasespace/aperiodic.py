@@ -1,0 +1,126 @@
+"""Attractors that no motion comes back to: tori and chaos, told apart and told from each other."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from periodic.orbit.scheme import Array
+from periodic.phasespace.birkhoff import DIGITS, digits, rotation_number
+from periodic.phasespace.clocks import Clock
+from periodic.phasespace.crowd import Crowd
+from periodic.phasespace.lyapunov import SIGMAS, exponents_of, rate_of
+from periodic.phasespace.motion import Motion, Sort, interval
+from periodic.phasespace.settle import Settling
+from periodic.system.ensembles import FOLLOWED
+
+LENGTHS = (4000, 8000, 16000, 32000)
+"""Periods of a motion from which it is told what it is: more where fewer do not show a torus."""
+
+LYAPUNOV = 1000
+"""Periods over which its exponent is averaged."""
+
+POINTS = 400
+"""Points of a motion that are looked for on another's attractor."""
+
+SPACINGS = 4.0
+"""How far from an attractor's points others are on it: in distances of 95 % of its points from the next."""
+
+ALIKE = 1e-2
+"""... or this part of the attractor's size: the points of a torus near a resonance leave gaps."""
+
+SHARE = 0.9
+"""Part of a motion's points that must be on an attractor on which it is."""
+
+
+@dataclass(frozen=True, eq=False)
+class Attractor:
+    """What is known of one: sections (K, n) of a motion on it, what it is, exponent and rotation number."""
+
+    sections: Array
+    sort: Sort
+    exponent: float
+    rotation: float
+    why: str = ""
+
+    def has(self, sections: Array, unit: Array) -> bool:
+        """Return whether a motion is on it."""
+        tree = KDTree(self.sections / unit)
+        own = np.asarray(tree.query(self.sections[-POINTS:] / unit, k=2)[0])[:, 1]
+        size = float(np.ptp(self.sections / unit, axis=0).max())
+        near = np.asarray(tree.query(sections[-POINTS:] / unit)[0])
+        return bool((near < max(SPACINGS * np.quantile(own, 0.95), ALIKE * size)).mean() > SHARE)
+
+
+@dataclass(frozen=True, eq=False)
+class Attractors:
+    """The attractors of motions that have not come back."""
+
+    crowd: Crowd
+    clock: Clock
+    unit: Array
+    found: list[Attractor] = field(default_factory=list)
+
+    def sorted_of(self, settling: Settling) -> Any:
+        """Return of each motion that is left on which of `found` it is."""
+        labels = []
+        for i, path in zip(settling.left, settling.sections, strict=True):
+            mine = [k for k, one in enumerate(self.found) if one.has(path, self.unit)]
+            if not mine:
+                mine = [len(self.found)]
+                self.found.append(self._described(settling.y[i], settling.modes[i]))
+            labels.append(mine[0])
+        return np.array(labels, dtype=int)
+
+    def add(self, motion: Motion) -> None:
+        """Add an attractor that was found before."""
+        self.found.append(
+            Attractor(motion.sections, motion.sort, motion.exponent, motion.rotation, motion.why)
+        )
+
+    def _described(self, y: Array, modes: Any) -> Attractor:
+        """A motion on an attractor, followed further."""
+        sections, y, modes = np.zeros((0, len(self.unit))), y[None], modes[None]
+        width = self.clock.stretch * self.clock.between
+        for length in LENGTHS:
+            path = self.crowd.run(y, length - len(sections), width, modes=modes, keep=True)
+            assert path.sections is not None
+            sections = np.concatenate([sections, path.sections[0, 1:, : len(self.unit)]])
+            if path.outcome[0] != FOLLOWED:
+                return Attractor(
+                    sections[:0], Sort.OPEN, math.nan, math.nan, "it was lost when followed further"
+                )
+            y, modes = path.ends, path.modes
+            size = np.ptp(sections, axis=0)
+            if digits(sections, np.where(size > 0, size, 1.0)) > DIGITS:
+                turns = rotation_number(sections, self.unit) if self.clock.whole else math.nan
+                return Attractor(sections, Sort.TORUS, 0.0, turns)
+        growth = exponents_of(self.crowd, y, modes, 1, LYAPUNOV)
+        value, error = rate_of(self.crowd) * growth.mean, rate_of(self.crowd) * growth.error
+        if value[0] > SIGMAS * error[0]:
+            return Attractor(sections, Sort.CHAOTIC, float(value[0]), math.nan)
+        largest = f"largest Lyapunov exponent {value[0]:.2g} +- {error[0]:.1g} 1/s"
+        why = f"neither torus nor chaos is certain: {largest}"
+        return Attractor(sections, Sort.OPEN, float(value[0]), math.nan, why)
+
+    def motion(self, k: int, starts: int, of: int) -> Motion:
+        """Return one of them as it is given."""
+        one = self.found[k]
+        return Motion(
+            one.sort,
+            True,
+            0,
+            f"by {starts} of the starts",
+            one.sections,
+            None,
+            starts,
+            starts / of,
+            interval(starts, of),
+            one.exponent,
+            one.rotation,
+            one.why,
+        )

@@ -1,0 +1,1 @@
+"""Many motions of one system followed at once, in compiled code."""
