@@ -16,6 +16,7 @@ NAMESPACES = {
     "periodic.maps": "what design maps are made of",
     "periodic.decisions": "results of fits, optima and scatter",
     "periodic.phasespace": "results of searches for motions, basins and exponents",
+    "periodic.tori": "families of tori, averages over them",
     "periodic.extend": "what extensions are written with",
 }
 """What few users call, and how its pages of the reference are headed."""

@@ -1,6 +1,6 @@
 """Periodic orbits: collocation, continuation, stability, special points. Knows only the `System` protocol."""
 
-from . import decisions, extend, maps, phasespace, plots
+from . import decisions, extend, maps, phasespace, plots, tori
 from .bifurcations.hopf import eigenvalues, hopf, normal_mode
 from .bifurcations.label import Label
 from .bifurcations.switching import SwitchError, branched, doubled
@@ -47,8 +47,10 @@ from .results.plots.branch import plot
 from .results.point import Point
 from .results.stop import Reason, Stop
 from .shooting.shooting import Shooting
-from .tori.invariant import Torus
-from .tori.torus import TorusError, torus
+from .tori.born import torus
+from .tori.section import TorusError
+from .tori.settled import settled_torus
+from .tori.torus import Torus
 from .tracing.continuation import Continuation
 from .tracing.pointsat import points_at
 from .tracing.resumption import Interrupted, ResumeError
@@ -140,7 +142,9 @@ __all__ = [
     "recovery",
     "sampled",
     "scatter",
+    "settled_torus",
     "sensitivities",
+    "tori",
     "torus",
     "trace",
     "unstable",

@@ -30,6 +30,7 @@ REFERENCE = (
     "maps",
     "decisions",
     "phasespace",
+    "tori",
     "extend",
 )
 PAGES = {str(file.relative_to(DOCS)): file for file in sorted(DOCS.glob("*/*.md"))}

@@ -16,6 +16,10 @@ DIGITS = 5.0
 """Digits to which two halves of a motion must agree on a torus."""
 
 
+LEAST = 1e-6
+"""Weakest line that is one, in units of the states."""
+
+
 def weights(count: int) -> Array:
     """Return the weights of an average over `count` values, w(t) ~ exp(-1 / (t (1 - t)))."""
     t = np.arange(1, count + 1) / (count + 1)
@@ -43,17 +47,36 @@ def rotation_number(sections: Array, unit: Array) -> float:
     Known but for its sign and whole turns, as a section at one phase tells no more. The strongest line of the
     spectrum, refined by maximising its weighted amplitude (Laskar, Physica D 67 (1993) 257).
     """
-    count = len(sections)
-    window = weights(count)[:, None]
-    column = int(np.argmax((sections / unit).std(axis=0)))
-    values = (sections[:, column] - (window[:, 0] @ sections[:, column])) / unit[column]
-    spectrum = np.abs(np.fft.rfft(values * window[:, 0], 4 * count))
-    peak = int(np.argmax(spectrum[1:])) + 1
-    turns = np.arange(count)
+    return float(lines(sections, unit, 1)[0])
+
+
+def lines(states: Array, unit: Array, count: int) -> list[float]:
+    """Return the strongest lines of a motion (K, n) at equal times, in turns from one to the next, (0, 1/2].
+
+    Each is subtracted before the next is looked for, in the state that has it most.
+    """
+    window = weights(len(states))
+    values = (states - window @ states) / unit
+    turns, found = np.arange(float(len(states))), list[float]()
+    for _ in range(count):
+        spectrum = np.abs(np.fft.rfft(values * window[:, None], 4 * len(values), axis=0))[1:]
+        place, column = np.unravel_index(int(spectrum.argmax()), spectrum.shape)
+        if not spectrum[place, column] > LEAST:
+            break
+        near = place / (4 * len(values)), (place + 2) / (4 * len(values))
+        line = _refined(values[:, column] * window, turns, near)
+        wave = np.exp(2j * np.pi * line * turns)
+        amplitude = (window * wave.conj()) @ values
+        values = values - 2 * np.real(np.multiply.outer(wave, amplitude))
+        found.append(min(line, 1 - line))
+    return found
+
+
+def _refined(weighted: Array, turns: Array, near: tuple[float, float]) -> float:
+    """The frequency in a range at which a weighted signal's amplitude is largest."""
 
     def weaker(frequency: float) -> float:
-        return -float(np.abs((window[:, 0] * values) @ np.exp(-2j * np.pi * frequency * turns)))
+        return -float(np.abs(weighted @ np.exp(-2j * np.pi * frequency * turns)))
 
-    near = (peak - 1) / (4 * count), (peak + 1) / (4 * count)
     found = scipy.optimize.minimize_scalar(weaker, bounds=near, method="bounded", options={"xatol": 1e-13})
-    return float(min(found.x, 1 - found.x))
+    return float(found.x)

@@ -136,7 +136,7 @@ def lyapunov(
     count = n if exponents is None else whole("exponents", exponents)
     if count > n:
         raise ValueError(f"exponents is {count}; the system has {n} states, and so many at the most")
-    begin = _begin(system, parameter, start)
+    begin = beginning(system, parameter, start)
     whole("periods", periods, BATCHES)
     settled = crowd.run(crowd.begin(begin[None]), whole("settle", settle, 0), FORCED)
     _check(int(settled.outcome[0]))
@@ -186,8 +186,8 @@ def rate_of(crowd: Crowd) -> float:
     return omega / FORCED
 
 
-def _begin(system: System, parameter: Array, start: Mapping[str, float] | None) -> Array:
-    """The states where a motion begins."""
+def beginning(system: System, parameter: Array, start: Mapping[str, float] | None) -> Array:
+    """Return the states (n,), scaled, where a motion begins. Raises ValueError."""
     rest = np.asarray(system.rest(parameter)[0], dtype=float).copy()
     if not start:
         return rest

@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import cache, lru_cache, partial
 from importlib import metadata
 from pathlib import Path
+from typing import Any, overload
 
 from threadpoolctl import ThreadpoolController
 
@@ -38,6 +39,7 @@ from periodic.tracing.resumption import (
 )
 from periodic.tracing.setup import Method, Setup, setup
 from periodic.tracing.steps.stepsize import ArclengthControl
+from periodic.tracing.traceable import R_co, Traceable, alone
 from periodic.tracing.watch import Watch
 
 ENDS_ALL = (Reason.CLOSED, Reason.MAX_NEWTON)
@@ -93,6 +95,20 @@ def continuation(
     return ready.run(ready.first(), sign or ready.signs[-1])
 
 
+@overload
+def trace(
+    system: System,
+    parameter: str,
+    bounds: tuple[float, float],
+    *,
+    start: float | None = None,
+    at: float | Sequence[float] = (),
+    guess: Traceable[R_co],
+    values: Mapping[str, float] | None = None,
+) -> R_co: ...
+
+
+@overload
 def trace(
     system: System,
     parameter: str,
@@ -107,7 +123,24 @@ def trace(
     method: Discretisation | None = None,
     control: ArclengthControl | None = None,
     watch: Watch | None = None,
-) -> Branch:
+) -> Branch: ...
+
+
+def trace(
+    system: System,
+    parameter: str,
+    bounds: tuple[float, float],
+    *,
+    start: float | None = None,
+    at: float | Sequence[float] = (),
+    tol: float | Tolerance = Accuracy.STANDARD,
+    guess: Orbit | Branch | Mapping[str, float] | Traceable[Any] | None = None,
+    values: Mapping[str, float] | None = None,
+    determined: Mapping[str, Condition] | None = None,
+    method: Discretisation | None = None,
+    control: ArclengthControl | None = None,
+    watch: Watch | None = None,
+) -> Any:
     """Trace the branch of periodic orbits, or of equilibria, through `start` within `bounds`.
 
     From a start at a bound the branch is followed towards the other, from one inside both ways. A numerical
@@ -133,7 +166,8 @@ def trace(
         `doubled`, `branched` or `hopf`, of one excitation period or several; it brings its parameters and a
         start of its own. An interrupted branch is taken up where it stands, all other arguments as before but
         for `control.max_points` and `control.max_newton`. Or constant values of states (SI) and unknowns by
-        name, the others being at rest: of several orbits the one near these is found.
+        name, the others being at rest: of several orbits the one near these is found. Or a Torus, whose
+        family is traced, with `start`, `at` and `values` alone: the result is a `per.tori.TorusBranch`.
     values : mapping of str to float, optional
         Other parameters (SI) by name, in place of the guess's or the system's nominal ones.
     determined : mapping of str to Condition, optional
@@ -165,6 +199,9 @@ def trace(
     Interrupted
         A KeyboardInterrupt (Ctrl-C) with the branch so far as `branch`.
     """
+    if isinstance(guess, Traceable):
+        alone(guess, tol=tol, determined=determined, method=method, control=control, watch=watch)
+        return guess.traced(system, parameter, bounds, start=start, at=at, values=values)
     problem = Problem(system, parameter, bounds, {} if determined is None else determined)
     problem, chosen = Method.of(problem, tol, method, control, watch)
     before = None

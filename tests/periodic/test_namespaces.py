@@ -14,7 +14,7 @@ from support.equations import lorenz
 
 import periodic as per
 
-NAMESPACES = ["decisions", "extend", "maps", "phasespace", "plots"]
+NAMESPACES = ["decisions", "extend", "maps", "phasespace", "plots", "tori"]
 PROTOCOLS = (
     *("Condition", "Discretisation", "Increment", "Operator", "Row", "SideCondition"),
     *("Solution", "System", "TestFunction", "Unknowns"),

@@ -9,8 +9,11 @@ from support.kept import kept
 import periodic as per
 import symbolic as sym
 from periodic.system import index_of
-from periodic.tori.invariant import Invariance, unknowns
-from periodic.tori.torus import Family, first
+from periodic.tori.born import first, start
+from periodic.tori.family import family_of
+from periodic.tori.invariance import Unknowns
+
+pytestmark = pytest.mark.usefixtures("users_kernels")
 
 
 @kept
@@ -55,15 +58,15 @@ def test_velocity_is_in_SI() -> None:
 def test_family_goes_on_the_way_it_has_come() -> None:
     """Assert the length and direction of two steps, and that the second is foreseen to second order."""
     system, born = sym.scene("jeffcott-internal-damping"), branch().labelled("NS")[0]
-    equations = Invariance(system, index_of(system, "n"), 1e-10)
-    family, off = Family(equations, 1e-8), []
+    family, off = family_of(system, index_of(system, "n"), 1e-8), []
     weights = np.concatenate([np.full(11 * len(system.states), 1 / 11), [1.0, 1.0]])
-    now, tangent = family.start(*first(system, born, 11))
+    now, tangent = start(family, *first(system, born, 11))
+    unknowns = Unknowns(family.equations, now).of
     assert weights @ tangent**2 == pytest.approx(1)
     for length in (0.1, 0.05):
         found = family.corrected(now, tangent, length)
         assert found is not None
-        way = unknowns(found[0], equations.free) - unknowns(now, equations.free)
+        way = unknowns(found[0]) - unknowns(now)
         assert weights @ (tangent * way) == pytest.approx(length, rel=1e-9)
         assert found[1] == pytest.approx(way / np.sqrt(weights @ way**2), rel=1e-12)
         off.append(np.sqrt(weights @ (way - length * tangent) ** 2))

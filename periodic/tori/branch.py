@@ -1,0 +1,160 @@
+"""A family of tori over a parameter, as it was traced."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from periodic.display.htmltables import paragraph, table
+from periodic.orbit.scheme import Array
+from periodic.results.plots.frame import dressed, fresh
+from periodic.tori.section import Section
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+SHOWN = 40
+"""Most points that a table shows."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TorusPoint:
+    """A torus of a family.
+
+    Parameters
+    ----------
+    torus : Section
+        The torus.
+    parameter : float
+        The parameter (SI).
+    moduli : ndarray, shape (n,)
+        Moduli of its multipliers, the largest first; see `per.tori.moduli`.
+    stable : bool
+        Whether motions beside it come to it.
+    label : str
+        "LP" at a fold of the family, "UZ" at a value asked for, "EP" at an end, else "".
+    """
+
+    torus: Section
+    parameter: float
+    moduli: Array
+    stable: bool
+    label: str = ""
+
+    def __repr__(self) -> str:
+        kind = "stable" if self.stable else "unstable"
+        return f"TorusPoint({self.parameter:.9g}, {self.label or 'torus'} {kind}, {self.torus!r})"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TorusBranch(Sequence[TorusPoint]):
+    """Tori in order along their family.
+
+    Parameters
+    ----------
+    parameter : str
+        Name of the parameter.
+    points : tuple of TorusPoint
+        The tori.
+    stops : tuple of str
+        Why the family ends at its first point, and at its last.
+    """
+
+    parameter: str
+    points: tuple[TorusPoint, ...]
+    stops: tuple[str, str]
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __getitem__(self, index: Any) -> Any:
+        return self.points[index]
+
+    def __iter__(self) -> Iterator[TorusPoint]:
+        return iter(self.points)
+
+    def __repr__(self) -> str:
+        return f"TorusBranch({len(self)} tori over {self.parameter}; {self.stops[0]} | {self.stops[1]})"
+
+    def __str__(self) -> str:
+        rows = [self._headings, *map(_row, self.points)]
+        widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+        lines = ["  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True)) for row in rows]
+        return "\n".join([*lines, f"begins: {self.stops[0]}", f"ends: {self.stops[1]}"])
+
+    def _repr_html_(self) -> str:
+        step = max(1, len(self) // SHOWN)
+        rows = [_row(point) for point in self.points[::step]]
+        return table(self._headings, rows) + "".join(paragraph(stop) for stop in self.stops)
+
+    @property
+    def _headings(self) -> tuple[str, ...]:
+        return (self.parameter, "rotation number", "size", "largest modulus", "stable", "angles", "tail", "")
+
+    @property
+    def values(self) -> Array:
+        """The parameter (SI), (K,)."""
+        return np.array([point.parameter for point in self.points])
+
+    @property
+    def rotation_numbers(self) -> Array:
+        """The rotation numbers, (K,)."""
+        return np.array([point.torus.rotation_number for point in self.points])
+
+    def labelled(self, label: str) -> list[TorusPoint]:
+        """Return the points with a label.
+
+        Parameters
+        ----------
+        label : str
+            "LP", "UZ" or "EP".
+
+        Returns
+        -------
+        list of TorusPoint
+            In order along the family.
+        """
+        return [point for point in self.points if point.label == label]
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Plot the size of the section over the parameter, stable tori drawn through, others dashed.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Where to plot; by default in a figure of its own.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+        """
+        axes = fresh(axes)
+        size = np.array([point.torus.size for point in self.points])
+        stable = np.array([point.stable for point in self.points])
+        for kind, style, name in ((stable, "-", "stable"), (~stable, "--", "unstable")):
+            near = kind | np.roll(kind, 1) | np.roll(kind, -1)
+            if kind.any():
+                axes.plot(self.values, np.where(near, size, np.nan), style, color="C0", label=name)
+        folds = self.labelled("LP")
+        if folds:
+            at = [fold.parameter for fold in folds], [fold.torus.size for fold in folds]
+            axes.plot(*at, "o", color="C3", label="LP")
+        return dressed(axes, self.parameter, "size of the section (scaled)")
+
+
+def _row(point: TorusPoint) -> tuple[str, ...]:
+    others = np.sort(np.abs(point.moduli))[::-1]
+    return (
+        f"{point.parameter:.9g}",
+        f"{point.torus.rotation_number:.9f}",
+        f"{point.torus.size:.6g}",
+        f"{others[0]:.6g}",
+        "yes" if point.stable else "no",
+        str(len(point.torus.states)),
+        f"{point.torus.tail:.0e}",
+        point.label,
+    )

@@ -1,0 +1,191 @@
+"""The equations of an invariant curve of the map over a period T, x(0) -> x(T), and their solution.
+
+The curve u(theta), theta in [0, 2 pi), is a Fourier series given by its values at an odd number M of
+equispaced angles. On a torus the map P turns it by the angle rho: with R the shift of a series in its angle,
+
+    (R_{-rho} P(u))(theta_j) = u(theta_j),   sum_j (u_j - v_j) . v'_j = 0,
+
+the second a phase condition with the curve v before (Schilder, Osinga & Vogt, SIAM J. Appl. Dyn. Syst.
+4 (2005) 459-488; Kuznetsov, Elements of Applied Bifurcation Theory, 7.3). T is the period of the excitation;
+where there is none it is unknown too, and sum_j (u_j - v_j) . f(v_j) = 0 holds the phase along the flow f.
+Events are those of the motions: contacts, impacts and friction are crossed where they happen.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from periodic.orbit.scheme import Array
+from periodic.phasespace.crowd import Crowd
+from periodic.system import System
+from periodic.system.ensembles import FOLLOWED
+from periodic.system.precision import MOST_ITERATIONS
+from periodic.tori.section import Section, kernel, tail_of
+
+DIFFERENCE = 1e-5
+"""Step of differences in the period and in a parameter, as a part of their sizes."""
+
+FAR = 1e3
+"""By how much equations are off where Newton's method has lost the torus."""
+
+STANDING = 1e-9
+"""Size of Newton's last step beside that of the unknowns: derivatives in a parameter are differences."""
+
+
+@dataclass(frozen=True, eq=False)
+class Invariance:
+    """The equations in the M n states, rho, T of a free torus, and one parameter, whose index is `free`.
+
+    tolerance: of the integration. scale: of the parameter, in which its steps are measured.
+    """
+
+    system: System
+    free: int
+    tolerance: float
+    scale: float = 1.0
+
+    def linearise(self, torus: Section) -> tuple[Array, Array]:
+        """Return the residual (M n,) and its derivatives (M n, M n + k). Raises ArithmeticError.
+
+        k: rho, T where it is free, and the parameter.
+        """
+        count, n = torus.states.shape
+        images, slopes = self.mapped(torus)
+        own = angles(count)
+        back, slope = kernel(count, np.subtract.outer(own - torus.rotation, own))
+        residual = (back @ images - torus.states).ravel()
+        moved = np.einsum("jk,kab->jakb", back, slopes).reshape(count * n, count * n)
+        columns = [(-slope @ images).ravel()]
+        if torus.free:
+            columns.append((back @ self._by_period(torus)).ravel())
+        columns.append((back @ self._by_parameter(torus)).ravel())
+        return residual, np.column_stack([moved - np.eye(count * n), *columns])
+
+    def mapped(self, torus: Section) -> tuple[Array, Array]:
+        """Return the images of the states, (M, n), and the derivatives of the map there, (M, n, n)."""
+        crowd, n = self._crowd(torus.parameter), torus.states.shape[1]
+        y = crowd.begin(torus.states)
+        found = crowd.run(y, 1, torus.period, tangents=crowd.tangents(y), raw=True)
+        if (found.outcome != FOLLOWED).any() or not np.isfinite(found.tangents).all():
+            raise ArithmeticError("a motion on the torus cannot be followed")
+        return found.ends[:, :n], np.swapaxes(found.tangents[:, :, :n], 1, 2)
+
+    def rates(self, torus: Section) -> Array:
+        """Return dx/dtau at the states, (M, n)."""
+        ends = [self._ends(torus.states, torus.parameter, side * STEP) for side in (1, 0)]
+        return (ends[0] - ends[1]) / STEP
+
+    def _by_period(self, torus: Section) -> Array:
+        """Derivative of the images in T, (M, n)."""
+        step = DIFFERENCE * torus.period
+        ends = [self._ends(torus.states, torus.parameter, torus.period + s * step) for s in (1, -1)]
+        return (ends[0] - ends[1]) / (2 * step)
+
+    def _by_parameter(self, torus: Section) -> Array:
+        """Derivative of the images in the parameter over its scale, (M, n)."""
+        value = torus.parameter[self.free]
+        step = DIFFERENCE * max(abs(value), 1e-3 * self.scale)
+        ends = []
+        for side in (1, -1):
+            parameter = torus.parameter.copy()
+            parameter[self.free] = value + side * step
+            ends.append(self._ends(torus.states, parameter, torus.period))
+        return (ends[0] - ends[1]) / (2 * step) * self.scale
+
+    def _ends(self, states: Array, parameter: Array, stretch: float) -> Array:
+        """Where states are after a stretch."""
+        if stretch == 0:
+            return states
+        crowd = self._crowd(parameter)
+        found = crowd.run(crowd.begin(states), 1, stretch)
+        if (found.outcome != FOLLOWED).any():
+            raise ArithmeticError("a motion on the torus cannot be followed")
+        return found.ends[:, : states.shape[1]]
+
+    def _crowd(self, parameter: Array) -> Crowd:
+        return Crowd(self.system, parameter, self.tolerance)
+
+
+STEP = 1e-6
+"""Phase (rad) by which a motion goes on for its rates."""
+
+
+def angles(count: int) -> Array:
+    """Return the equispaced angles of a curve."""
+    return np.asarray(2 * np.pi * np.arange(count) / count)
+
+
+@dataclass(frozen=True, eq=False)
+class Unknowns:
+    """All unknowns of a torus as one array: states, rho, T where it is free, the parameter over its scale."""
+
+    equations: Invariance
+    like: Section
+
+    def of(self, torus: Section) -> Array:
+        """Return the array of a torus."""
+        last = [torus.rotation, *([torus.period] if torus.free else [])]
+        value = torus.parameter[self.equations.free] / self.equations.scale
+        return np.concatenate([torus.states.ravel(), [*last, value]])
+
+    def torus(self, values: Array) -> Section:
+        """Return the torus of an array."""
+        parameter, count = self.like.parameter.copy(), self.like.states.size
+        parameter[self.equations.free] = values[-1] * self.equations.scale
+        states = values[:count].reshape(self.like.states.shape)
+        return replace(
+            self.like,
+            states=states,
+            rotation=float(values[count]),
+            period=float(values[count + 1]) if self.like.free else self.like.period,
+            parameter=parameter,
+            residual=np.inf,
+            tail=tail_of(states),
+        )
+
+    @cached_property
+    def weights(self) -> Array:
+        """Weights in the arclength: states by 1/M, M the number of angles, others by 1."""
+        count, n = self.like.states.shape
+        return np.concatenate([np.full(count * n, 1 / count), np.ones(3 if self.like.free else 2)])
+
+
+def phase_rows(equations: Invariance, torus: Section) -> Array:
+    """Return what the phase conditions hold, over all unknowns, (1 or 2, M n + k)."""
+    count = len(torus.states)
+    own = angles(count)
+    rows = [kernel(count, np.subtract.outer(own, own))[1] @ torus.states]
+    if torus.free:
+        rows.append(equations.rates(torus))
+    zeros = np.zeros(3 if torus.free else 2)
+    return np.array([np.concatenate([row.ravel() / count, zeros]) for row in rows])
+
+
+def solved(
+    equations: Invariance, guess: Section, before: Section, held: Array, level: float, tol: float
+) -> Section | None:
+    """Return the torus near a guess with held . unknowns = level; None where Newton's method fails.
+
+    before: the torus whose phases are kept.
+    """
+    unknowns = Unknowns(equations, guess)
+    values, origin = unknowns.of(guess), unknowns.of(before)
+    try:
+        along = phase_rows(equations, before)
+        for _ in range(MOST_ITERATIONS):
+            torus = unknowns.torus(values)
+            residual, jacobian = equations.linearise(torus)
+            size = float(np.abs(residual).max())
+            if not size < FAR:
+                return None
+            gaps = [*(along @ (values - origin)), held @ values - level]
+            if size < tol and np.abs(gaps).max() < tol:
+                return replace(torus, residual=size, tail=tail_of(torus.states))
+            matrix = np.vstack([jacobian, along, held])
+            values = values - np.linalg.solve(matrix, np.append(residual, gaps))
+    except (ArithmeticError, np.linalg.LinAlgError):
+        return None
+    return None

@@ -1,0 +1,143 @@
+"""The section of a quasi-periodic motion, once in a period: what tori are known by."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from periodic.checks import one_of
+from periodic.orbit.layout import Layout
+from periodic.orbit.scheme import Array
+
+
+class TorusError(ArithmeticError):
+    """A torus is not found; the sentence says where and why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """A quasi-periodic motion, by its section once in a period.
+
+    Parameters
+    ----------
+    states : ndarray, shape (M, n)
+        Scaled states at tau = 0 and M equispaced angles theta.
+    rotation : float
+        rho in rad: by how much theta grows in one period.
+    parameter : ndarray, shape (p,)
+        The system's parameters.
+    period : float
+        Of the map, in tau: that of the excitation, or one that the torus determines.
+    layout : Layout
+        Names, units and scales.
+    residual : float
+        Largest residual of the invariance, scaled.
+    tail : float
+        Largest of the two highest harmonics of the curve, relative to its largest: an estimate of the error.
+    free : bool
+        Whether the system is not excited, so that the period is determined with the torus.
+    """
+
+    states: Array
+    rotation: float
+    parameter: Array
+    period: float
+    layout: Layout
+    residual: float = np.inf
+    tail: float = np.inf
+    free: bool = False
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}(rotation number {self.rotation_number:.9g}, {len(self.states)} angles)"
+
+    @property
+    def rotation_number(self) -> float:
+        """Turns of the section in one period, rho / (2 pi), in [0, 1)."""
+        return float(self.rotation / (2 * np.pi) % 1.0)
+
+    @property
+    def frequencies(self) -> tuple[float, float]:
+        """Both angular frequencies (rad/s): 2 pi / period, and the rotation number times it.
+
+        The second is known but for whole multiples of the first, and its sign.
+        """
+        omega = self.layout.omega(self.parameter) if self.layout.frequency else 1.0
+        first = 2 * np.pi / self.period * omega
+        return float(first), float(self.rotation_number * first)
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The parameters in SI units, by name."""
+        both = zip(self.layout.parameters, self.parameter, strict=True)
+        return {q.name: q.scale * float(value) for q, value in both}
+
+    @property
+    def size(self) -> float:
+        """How far the section is from its middle, root mean square of all scaled states; 0 at birth."""
+        return float(np.sqrt(((self.states - self.states.mean(axis=0)) ** 2).sum(axis=1).mean()))
+
+    def section(self, name: str, angles: Array | None = None) -> Array:
+        """Return a state around the section at tau = 0.
+
+        Parameters
+        ----------
+        name : str
+            A state; its velocity x' is dx/dt.
+        angles : ndarray, optional
+            theta in rad; by default the M equispaced ones.
+
+        Returns
+        -------
+        ndarray
+            SI values.
+
+        Raises
+        ------
+        ValueError
+            For a name that is no state.
+        """
+        one_of("section", name, [q.name for q in self.layout.states])
+        values = self.states if angles is None else self.states_at(np.asarray(angles))
+        return np.asarray(self.units[name] * values[:, self.layout.column(name).index])
+
+    @property
+    def units(self) -> Mapping[str, float]:
+        """SI values of one internal unit of each state, by name."""
+        columns = [self.layout.column(q.name) for q in self.layout.states]
+        omega = self.layout.omega(self.parameter) if any(c.order for c in columns) else 1.0
+        return {c.name: c.scale * omega**c.order for c in columns}
+
+    def states_at(self, angles: Array) -> Array:
+        """Return all scaled states of the section.
+
+        Parameters
+        ----------
+        angles : ndarray, shape (K,)
+            theta in rad.
+
+        Returns
+        -------
+        ndarray, shape (K, n)
+            The states.
+        """
+        own = 2 * np.pi * np.arange(len(self.states)) / len(self.states)
+        return kernel(len(self.states), np.subtract.outer(angles, own))[0] @ self.states
+
+
+Function = Callable[[Mapping[str, Array]], Array]
+"""Of states in SI by their names, each an array, as ``lambda s: s["x"] ** 2``."""
+
+
+def kernel(count: int, angle: Array) -> tuple[Array, Array]:
+    """Return Dirichlet's kernel of `count` angles and its slope."""
+    order = np.arange(1, count // 2 + 1)
+    turn = np.multiply.outer(angle, order)
+    return (1 + 2 * np.cos(turn).sum(axis=-1)) / count, -2 * (np.sin(turn) @ order) / count
+
+
+def tail_of(states: Array) -> float:
+    """The highest two harmonics of a curve, relative to its largest one."""
+    size = np.abs(np.fft.rfft(states, axis=0))[1:].max(axis=1)
+    return float(size[-2:].max() / max(size.max(), np.finfo(float).tiny))

@@ -1,0 +1,179 @@
+"""Tori of settled motions and their families: known numbers, births, folds, both kinds of frequencies."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.kept import kept
+
+import periodic as per
+import symbolic as sym
+
+pytestmark = pytest.mark.usefixtures("users_kernels")
+
+
+def two_forces() -> sym.CompiledSystem:
+    """x'' + 0.1 x' + x + 1.5 x^3 = 0.25 sin(eta t) + 0.25 sin(sqrt(2) eta t); c and s turn by the second."""
+
+    def rates(x, p, wave):  # type: ignore[no-untyped-def]
+        left, omega = 1 - x.c**2 - x.s**2, math.sqrt(2) * p.eta
+        return {
+            "x": x.v,
+            "v": 0.25 * wave.sin + 0.25 * x.s - 0.1 * x.v - x.x - 1.5 * x.x**3,
+            "c": left * x.c - omega * x.s,
+            "s": left * x.s + omega * x.c,
+        }
+
+    states = {"x": 0.0, "v": 0.0, "c": 1.0, "s": 0.0}
+    return sym.compile(sym.Equations(rates, states, {"eta": 1.9}, frequency="eta"))
+
+
+def coupled() -> sym.CompiledSystem:
+    """Two van der Pol oscillators of different frequencies, coupled: not excited."""
+
+    def rates(x, p):  # type: ignore[no-untyped-def]
+        return {
+            "x": x.u,
+            "u": -p.e * (x.x**2 - 1) * x.u - x.x + p.a * (x.y - x.x),
+            "y": x.v,
+            "v": -p.e * (x.y**2 - 1) * x.v - (1 + p.b) * x.y + p.a * (x.x - x.y),
+        }
+
+    states = {"x": 1.0, "u": 0.0, "y": 0.5, "v": 0.0}
+    return sym.compile(sym.Equations(rates, states, {"e": 0.5, "a": 0.1, "b": 1.1}))
+
+
+def forced() -> sym.CompiledSystem:
+    """x'' + 0.3 (x^2 - 1) x' + x = 0.4 cos(eta t)."""
+    return sym.compile(
+        sym.Equations(
+            lambda x, p, wave: {"x": x.v, "v": 0.4 * wave.cos - 0.3 * (x.x**2 - 1) * x.v - x.x},
+            {"x": 0.0, "v": 0.0},
+            {"eta": 1.4},
+            frequency="eta",
+        )
+    )
+
+
+@kept
+def with_two_forces() -> per.Torus:
+    """The torus at eta = 1.9."""
+    return per.settled_torus(two_forces())
+
+
+def test_two_forces() -> None:
+    """Assert rotation number sqrt(2), and averages known to ten digits from integration over 4000 units."""
+    system, torus = two_forces(), with_two_forces()
+    assert torus.rotation_number == pytest.approx(math.sqrt(2) - 1, rel=1e-10)
+    for power, name, known in (
+        (2, "x", 0.00542667682441),
+        (4, "x", 5.63111720483e-5),
+        (2, "v", 0.0225188513595),
+    ):
+        found = per.tori.average(system, torus, lambda s, name=name, power=power: s[name] ** power)
+        assert found == pytest.approx(known, rel=1e-9)
+
+
+def test_both_frequencies_free() -> None:
+    """Assert the frequencies of coupled oscillators near a resonance of 10 to 7, and averages."""
+    system = coupled()
+    torus = per.settled_torus(system, start={"x": 1.0, "y": 0.5})
+    first, beside = torus.frequencies
+    assert torus.free
+    assert sorted([first, first - beside]) == pytest.approx([1.0315375291, 1.47363265105], rel=1e-9)
+    assert per.tori.average(system, torus, lambda s: s["x"] ** 2) == pytest.approx(1.99803323659, rel=1e-9)
+    assert per.tori.average(system, torus, lambda s: s["y"] ** 2) == pytest.approx(1.99380063634, rel=1e-9)
+    exponents = per.lyapunov(system, start={"x": 1.0, "y": 0.5}, periods=1000)
+    sizes = per.tori.moduli(system, torus)
+    assert sizes[:2] == pytest.approx([1.0, 1.0], abs=1e-6)
+    assert sizes[2:] == pytest.approx(np.exp(exponents.values[2:] * torus.period), rel=2e-3)
+
+
+def test_one_frequency_free() -> None:
+    """Assert the free frequency of a forced oscillator, and the average of x^2."""
+    torus = per.settled_torus(forced())
+    assert 1.4 * (1 - torus.rotation_number) == pytest.approx(0.9965355256, rel=1e-9)
+    assert per.tori.average(forced(), torus, lambda s: s["x"] ** 2) == pytest.approx(1.9463176, rel=1e-7)
+
+
+@kept
+def rotor_family() -> per.tori.TorusBranch:
+    """Whirl of the rotor with internal damping, traced down to its birth."""
+    rotor = sym.scene("jeffcott-internal-damping")
+    torus = per.settled_torus(rotor, {"n": 2.0})
+    return per.trace(rotor, "n", (1.6, 2.2), guess=torus, at=[2.1])
+
+
+def test_family_ends_where_it_is_born() -> None:
+    """Assert the torus bifurcation that the branch of orbits has at 1.7147671116, from the tori alone."""
+    family = rotor_family()
+    told = family.stops[0]
+    assert told.startswith("the torus shrinks to an orbit, a torus bifurcation (NS) near ")
+    assert float(told.rpartition(" ")[2]) == pytest.approx(1.7147671116, rel=1e-6)
+    assert family.stops[1] == "end of the range at 2.2"
+    assert all(point.stable for point in family if point.torus.size > 0.05)
+    (asked,) = family.labelled("UZ")
+    assert asked.parameter == 2.1
+    again = per.settled_torus(sym.scene("jeffcott-internal-damping"), {"n": 2.1})
+    assert again.rotation_number == pytest.approx(asked.torus.rotation_number, rel=1e-8)
+
+
+def test_both_ways_to_a_torus() -> None:
+    """Assert that the torus of a motion is that followed from its birth."""
+    rotor = sym.scene("jeffcott-internal-damping")
+    branch = per.trace(rotor, "n", (1.2, 2.0), start=1.2)
+    born = per.torus(rotor, branch.labelled("NS")[0], "n", 2.0)
+    (middle,) = [point for point in rotor_family() if point.parameter == pytest.approx(2.0, abs=1e-12)]
+    turns = middle.torus.rotation_number  # the other way round its curve
+    assert 1 - turns == pytest.approx(born.rotation_number, rel=1e-9)
+    assert middle.torus.size == pytest.approx(born.size, rel=1e-8)
+
+
+def test_family_round_its_folds() -> None:
+    """Assert the folds of the oscillator with two forces, each an end of what is stable."""
+    system = two_forces()
+    family = per.trace(system, "eta", (1.2, 2.0), guess=with_two_forces())
+    folds = [point.parameter for point in family.labelled("LP")]
+    assert folds == pytest.approx([1.796784629, 1.337617627], abs=1e-8)
+    finer = per.trace(system, "eta", (1.2, 1.9), guess=per.settled_torus(system, angles=81))
+    assert sorted(p.parameter for p in finer.labelled("LP")) == pytest.approx(sorted(folds), abs=1e-8)
+    first, last = (family.points.index(fold) for fold in family.labelled("LP"))
+    assert not any(point.stable for point in family[first + 1 : last])
+    assert family.rotation_numbers == pytest.approx(math.sqrt(2) - 1, rel=1e-9)
+
+
+def test_motion_in_time_is_that_of_the_equations() -> None:
+    """Assert a hundred periods on a torus against a motion followed by another integrator."""
+    system, torus = forced(), per.settled_torus(forced())
+    time, states = per.tori.in_time(system, torus, periods=20, samples=16)
+    path = system.motion(torus.states[0], np.zeros(0), torus.parameter, time * 1.4, 1e-12)
+    assert np.abs(states["x"] - path.state[:, 0]).max() < 1e-7
+
+
+def test_tables_and_pictures(tmp_path: Path) -> None:
+    """Assert what a family and its points say, and the axes of its picture."""
+    family = rotor_family()
+    assert "rotation number" in str(family).splitlines()[0] and "<table" in family._repr_html_()
+    assert repr(family).startswith(f"TorusBranch({len(family)} tori over n; the torus shrinks")
+    assert repr(family[3]).startswith("TorusPoint(")
+    axes = family.plot()
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("n", "size of the section (scaled)")
+    axes.figure.savefig(tmp_path / "family.png")
+
+
+def test_refusals() -> None:
+    """Assert a sentence for motions that are no tori, and for arguments that are for orbits."""
+    with pytest.raises(per.TorusError, match="the motion is not quasi-periodic with two frequencies"):
+        per.settled_torus(sym.scene("duffing"), {"Omega": 2.0})
+    with pytest.raises(ValueError, match="angles is 40; it must be odd"):
+        per.settled_torus(forced(), angles=40)
+    torus = with_two_forces()
+    with pytest.raises(ValueError, match=r"tol is 0\.001; with a Torus as a guess it must be left out"):
+        per.trace(two_forces(), "eta", (1.0, 2.0), guess=torus, tol=1e-3)  # type: ignore[call-overload]
+    with pytest.raises(ValueError, match="start is 3; it must lie within the bounds 1 to 2"):
+        per.trace(two_forces(), "eta", (1.0, 2.0), guess=torus, start=3.0)
+    with pytest.raises(ValueError, match=r"bounds are \(2, 1\); they must be two finite numbers"):
+        per.trace(two_forces(), "eta", (2, 1), guess=torus)
