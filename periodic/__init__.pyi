@@ -34,6 +34,7 @@ from .orbit.extrema import extrema, outputs
 from .orbit.orbit import Orbit
 from .orbit.sampling import sampled
 from .orbit.scheme import Family, Scheme
+from .phasespace.atlas import atlas
 from .phasespace.basins import basins
 from .phasespace.lyapunov import LyapunovError, lyapunov
 from .phasespace.motions import motions
@@ -109,6 +110,7 @@ __all__ = [
     "TorusError",
     "Value",
     "Watch",
+    "atlas",
     "basins",
     "branched",
     "continuation",

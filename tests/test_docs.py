@@ -117,6 +117,19 @@ def test_fitting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert found.errors["c"] < 0.002 and not found.untold
 
 
+def test_everything(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert motions, basins, atlas, chaos and tori of the page by numbers that are known."""
+    monkeypatch.setenv("ORBITRACE_KERNELS", "auto")
+    said = run("tutorials/everything.md", tmp_path, monkeypatch)
+    assert [motion.stable for motion in said["found"]] == [True, True, False]
+    assert sum(motion.share for motion in said["basins"].motions) == pytest.approx(1.0)
+    assert len(said["atlas"].sheets) == 1
+    assert said["chaos"].chaotic and said["chaos"].values.sum() == pytest.approx(-0.25, rel=1e-6)
+    assert said["whirl"].rotation_number == pytest.approx(1 - 0.50120598859, rel=1e-8)
+    assert "NS" in said["family"].stops[0]
+    assert said["both"].rotation_number == pytest.approx(2**0.5 - 1, rel=1e-9)
+
+
 def test_damper(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """Assert onset of slip, optimum and scatter of the page."""
     said = run("tutorials/damper.md", tmp_path, monkeypatch)

@@ -13,6 +13,10 @@ pytestmark = pytest.mark.gallery
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 
 KEYS = {
+    "all_motions": (2.605383, 1e-5),
+    "atlas": (0.598153117, 1e-6),
+    "chaos": (-0.25, 1e-6),
+    "torus_family": (0.843933665, 1e-8),
     "torus": (0.501205988590, 1e-8),
     "beam_stop": (3.341671435481361, 1e-9),
     "damper_design": (1.101655979756, 1e-9),

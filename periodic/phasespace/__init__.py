@@ -1,8 +1,9 @@
 """Everything a system can do at given parameters: all its motions, their basins, chaos by its exponents."""
 
+from periodic.phasespace.charted import Atlas, Sheet
 from periodic.phasespace.lyapunov import Exponents
 from periodic.phasespace.motion import Motion, Motions, Sort
 from periodic.phasespace.partition import Basins
 from periodic.phasespace.picture import Elsewhere
 
-__all__ = ["Basins", "Elsewhere", "Exponents", "Motion", "Motions", "Sort"]
+__all__ = ["Atlas", "Basins", "Elsewhere", "Exponents", "Motion", "Motions", "Sheet", "Sort"]

@@ -118,7 +118,7 @@ def traced(
     with meter(f"tracing tori over {parameter}", "tori") as show:
         halves = []
         for way in ways:
-            march = March(family, parameter, (low / scale, high / scale), scale, way, asked, max_points)
+            march = OneWay(family, parameter, (low / scale, high / scale), scale, way, asked, max_points)
             made = []
             for point in march.points(first):
                 made.append(point)
@@ -133,7 +133,7 @@ def traced(
 
 
 @dataclass
-class March:
+class OneWay:
     """One way along a family, within bounds of the parameter (scaled); stop: why it ended."""
 
     family: Family

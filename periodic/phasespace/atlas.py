@@ -1,0 +1,214 @@
+"""Everything over a parameter: branches joined, shares of basins, what is seen from many starts beneath."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from periodic.checks import number, one_of, whole
+from periodic.correction.outcome import FAILURES
+from periodic.correction.tolerance import Accuracy
+from periodic.display.meter import meter
+from periodic.orbit.orbit import FORCED
+from periodic.orbit.scheme import Array
+from periodic.phasespace.charted import Atlas, Sheet
+from periodic.phasespace.motion import Motion, Motions, Sort
+from periodic.phasespace.search import Search, search_of
+from periodic.results.branch import Branch
+from periodic.system import System, index_of
+from periodic.tracing.steps.stepsize import ArclengthControl
+from periodic.tracing.trace import trace
+from periodic.tracing.watch import Watch
+
+NEAR = 1e-3
+"""Distance of an orbit's states from a branch's, in widths of the box, where it is on it."""
+
+POINTS = 2000
+"""Most points of a branch in each direction."""
+
+LOOKED = 48
+"""Periods of each settled motion that the diagram beneath shows."""
+
+
+def atlas(
+    system: System,
+    parameter: str,
+    bounds: tuple[float, float],
+    values: Mapping[str, float] | None = None,
+    *,
+    box: Mapping[str, tuple[float, float]] | None = None,
+    state: str | None = None,
+    count: int = 21,
+    diagram: int = 200,
+    periods: int = 4,
+    starts: int = 64,
+    places: int = 16,
+    settle: int = 1000,
+    branches: int = 16,
+    seed: int = 0,
+    tol: float = Accuracy.STANDARD,
+) -> Atlas:
+    """Return what an excited system can do over a parameter.
+
+    At `count` values all motions are looked for as `motions` does. The branch of each orbit that is on no
+    known one is traced through the whole range. Shares of the box are those of the starts at each value.
+
+    Parameters
+    ----------
+    system : System
+        The equations; one that integrates itself in time, as those of `symbolic.compile` do.
+    parameter : str
+        The parameter.
+    bounds : tuple of float
+        Its range (SI).
+    values : mapping of str to float, optional
+        Other parameters (SI) that differ from their nominal values.
+    box : mapping of str to (float, float), optional
+        Ranges of states (SI) in which motions start, as in `motions`; by default that of the lower end.
+    state : str, optional
+        The state that the picture shows at tau = 0; by default the first.
+    count : int
+        Values at which motions are looked for.
+    diagram : int
+        Values of the diagram beneath, of motions from a few starts each.
+    periods, starts, places, settle
+        As in `motions`.
+    branches : int
+        Most branches that are traced.
+    seed, tol
+        As in `motions`.
+
+    Returns
+    -------
+    Atlas
+        Branches, shares, diagram.
+
+    Raises
+    ------
+    ValueError
+        For what is not allowed.
+    """
+    place, (low, high) = index_of(system, parameter), (number("bounds", end) for end in bounds)
+    if not -np.inf < low < high < np.inf:
+        raise ValueError(f"bounds are {bounds!r}; they must be two finite numbers, the first the smaller")
+    if parameter in (values or {}):
+        raise ValueError(f"values has {parameter!r}, over which the atlas is; it must be left out")
+    whole("diagram", diagram, 2), whole("branches", branches)
+    names = [each.name for each in system.states]
+    column = names.index(names[0] if state is None else one_of("state", state, names))
+    at = np.linspace(low, high, whole("count", count, 2))
+    given = (periods, starts, settle, places, seed, tol)
+    first = search_of(system, {**(values or {}), parameter: low}, box, *given)
+    chart = Chart(first, parameter, place, at, branches)
+    with meter(f"atlas over {parameter}", "values", len(at) + diagram) as show:
+        for k, value in enumerate(at):
+            found = chart.look(k, float(value))
+            show(1, f"{len(found)} motions at {value:.6g}, {len(chart.sheets)} branches")
+        dots = [chart.dots(float(value), column, show) for value in np.linspace(low, high, diagram)]
+    unit = first.box.unit[column]
+    return Atlas(
+        parameter,
+        names[column],
+        at,
+        tuple(chart.motions),
+        tuple(chart.sheets),
+        np.concatenate(dots) * [1.0, unit],
+        column,
+        float(unit),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """What is known of a system over a parameter so far: branches with their orbits at the values `at`."""
+
+    search: Search
+    parameter: str
+    place: int
+    at: Array
+    most: int
+    sheets: list[Sheet] = field(default_factory=list)
+    motions: list[Motions] = field(default_factory=list)
+
+    def look(self, k: int, value: float) -> Motions:
+        """Look for all motions at one of the values, and trace branches of those on none that is known."""
+        found = self._there(value).run({}, lambda said: None)
+        self.motions.append(found)
+        for motion in found:
+            if motion.point is None or motion.sort != Sort.PERIODIC:
+                continue
+            if self._on(k, motion) is None and len(self.sheets) < self.most:
+                self._trace(k, value, motion)
+            if (on := self._on(k, motion)) is not None and on[1] >= 0:
+                on[0].shares[on[1], k] += motion.share
+        return found
+
+    def dots(self, value: float, column: int, show: Callable[[int, str], None]) -> Array:
+        """Return value and a state (K, 2) of settled motions from a few starts, at tau = 0."""
+        search = replace(self._there(value), starts=FEW)
+        crowd = search.crowd
+        y = crowd.begin(search.box.draw(FEW, search.seed, crowd.system, crowd.parameter))
+        settled = crowd.run(y, search.settle, FORCED)
+        path = crowd.run(settled.ends, LOOKED, FORCED, modes=settled.modes, keep=True)
+        assert path.sections is not None
+        states = path.sections[:, :, column].ravel()
+        states = states[np.isfinite(states)]
+        show(1, f"at {value:.6g}")
+        return np.column_stack([np.full(len(states), value), states])
+
+    def _there(self, value: float) -> Search:
+        """The search at a value of the parameter, in the same box."""
+        parameter = self.search.crowd.parameter.copy()
+        parameter[self.place] = value
+        crowd = replace(self.search.crowd, parameter=parameter)
+        return replace(self.search, crowd=crowd)
+
+    def _on(self, k: int, motion: Motion) -> tuple[Sheet, int] | None:
+        """The branch on which an orbit at the k-th value is, and its stable stretch there, -1 for none."""
+        clock, unit = self.search.clock, self.search.box.width
+        for sheet in self.sheets:
+            for stretch, states in sheet.sections[k]:
+                if clock.same(motion.sections, states, unit, NEAR):
+                    return sheet, stretch
+        return None
+
+    def _trace(self, k: int, value: float, motion: Motion) -> None:
+        """Add the branch of an orbit through the range, where it can be traced."""
+        assert motion.point is not None
+        try:
+            branch = trace(
+                self.search.crowd.system,
+                self.parameter,
+                (float(self.at[0]), float(self.at[-1])),
+                start=value,
+                at=[float(v) for v in self.at],
+                guess=motion.point.orbit,
+                tol=self.search.tol,
+                control=ArclengthControl(max_points=POINTS),
+                watch=Watch(peaks={}, progress=lambda point: None),
+            )
+        except (*FAILURES, ValueError):
+            return
+        sections, stretches = self._sections(branch, motion.periods)
+        self.sheets.append(Sheet(branch, motion.periods, sections, np.zeros((stretches, len(self.at)))))
+
+    def _sections(self, branch: Branch, periods: int) -> tuple[list[list[tuple[int, Array]]], int]:
+        """The states once in each period of a branch's orbits at each of the values, and how many stretches.
+
+        Each with the number of the stable stretch along the branch, -1 where it is unstable.
+        """
+        found: list[list[tuple[int, Array]]] = [[] for _ in self.at]
+        stretch, before = -1, False
+        for point in branch:
+            stretch, before = stretch + (point.stable and not before), point.stable
+            k = int(np.argmin(np.abs(self.at - point.parameter)))
+            if abs(point.parameter - self.at[k]) <= 1e-9 * max(1.0, abs(self.at[k])):
+                states = point.orbit.state(FORCED * np.arange(float(periods)))
+                found[k].append((stretch if point.stable else -1, states))
+        return found, stretch + 1
+
+
+FEW = 6
+"""Starts at each value of the diagram."""

@@ -1,0 +1,75 @@
+"""Everything over a parameter: the gear pair's branch with the shares of its stable stretches."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.kept import kept
+from support.oscillators import oscillator
+
+import periodic as per
+import symbolic as sym
+
+pytestmark = pytest.mark.usefixtures("users_kernels")
+
+
+@kept
+def gears() -> per.phasespace.Atlas:
+    """The gear pair about its resonance."""
+    box = {"x": (-3, 3), "x'": (-2, 2)}
+    given = {"count": 5, "diagram": 9, "starts": 40, "places": 8, "periods": 2}
+    return per.atlas(sym.scene("gear-pair"), "Omega", (0.56, 0.96), box=box, **given)
+
+
+def test_one_branch_with_two_stable_stretches() -> None:
+    """Assert that the branch is traced once, and that shares of its stretches make the whole."""
+    found = gears()
+    (sheet,) = found.sheets
+    assert found.values == pytest.approx([0.56, 0.66, 0.76, 0.86, 0.96])
+    assert len(sheet.shares) == 2 and sheet.shares.sum(axis=0) == pytest.approx(1.0)
+    assert (sheet.shares[0] > 0).tolist() == [True, True, True, False, False]
+    folds = [point.parameter for point in sheet.branch.labelled("LP")]
+    assert folds == pytest.approx([0.835837679, 0.598153117], abs=1e-6)
+    basins = per.basins(
+        sym.scene("gear-pair"), {"Omega": 0.66}, box={"x": (-3, 3), "x'": (-2, 2)}, starts=2000
+    )
+    (low, high), share = basins.motions[0].interval, sheet.shares[:, 1].max()
+    assert low - 0.25 < share < high + 0.25
+
+
+def test_diagram_is_on_the_branch() -> None:
+    """Assert that settled motions from any start are on one of the stable stretches at their value."""
+    found = gears()
+    at = found.dots[np.isclose(found.dots[:, 0], 0.66)]
+    own = [float(states[0, 0]) for number, states in found.sheets[0].sections[1] if number >= 0]
+    away = np.abs(at[:, 1:] - found.unit * np.array(own)).min(axis=1)
+    assert len(at) > 100 and away.max() < 1e-4
+
+
+def test_words_and_picture(tmp_path: Path) -> None:
+    """Assert what it says, and the axes of its picture."""
+    found = gears()
+    assert repr(found) == "Atlas(1 branches over Omega from 0.56 to 0.96)"
+    lines = str(found).splitlines()
+    assert lines[1].startswith("1: one period; bound reached")
+    assert lines[2].startswith("   1a attracts ") and lines[3].startswith("   1b attracts ")
+    assert any(line.startswith("   LP at 0.8358376") for line in lines)
+    figure = found.plot()
+    upper, lower = figure.axes
+    assert (upper.get_ylabel(), lower.get_xlabel()) == ("x at tau = 0", "Omega")
+    figure.savefig(tmp_path / "atlas.png")
+
+
+def test_refusals() -> None:
+    """Assert the sentences for what is not allowed."""
+    system = oscillator()
+    with pytest.raises(ValueError, match=r"bounds are \(2, 1\); they must be two finite numbers"):
+        per.atlas(system, "Omega", (2, 1))
+    with pytest.raises(ValueError, match="values has 'Omega', over which the atlas is; it must be left out"):
+        per.atlas(system, "Omega", (1, 2), {"Omega": 1.0})
+    with pytest.raises(ValueError, match="state is 'z'; it must be one of x, x'"):
+        per.atlas(system, "Omega", (1, 2), state="z")
+    with pytest.raises(ValueError, match="count is 1; it must be a whole number of at least 2"):
+        per.atlas(system, "Omega", (1, 2), count=1)
