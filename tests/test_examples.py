@@ -8,6 +8,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pytest
 
+from symbolic.kernels import native
+
 pytestmark = pytest.mark.gallery
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
@@ -46,6 +48,9 @@ KEYS = {
 }
 """Key numbers, and to which relative precision they are known: closed forms and references of other tests."""
 
+MANY = ("all_motions", "atlas", "chaos", "torus", "torus_family")
+"""Those that follow many motions, which takes long without a compiler."""
+
 
 def test_every_example_has_its_number() -> None:
     """Assert that no script is left out."""
@@ -55,6 +60,8 @@ def test_every_example_has_its_number() -> None:
 @pytest.mark.parametrize("name", KEYS)
 def test_example(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert the key number, a picture, and that it is short."""
+    if name in MANY and native.compiler() is not None:
+        monkeypatch.setenv("ORBITRACE_KERNELS", "c")
     file = EXAMPLES / f"{name}.py"
     plt.switch_backend("Agg")
     plt.close("all")

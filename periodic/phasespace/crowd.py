@@ -94,7 +94,7 @@ class Crowd:
                 targets=targets,
             )
 
-        if len(parts) == 1 or self._cores == 1:
+        if len(parts) == 1 or self._cores == 1 or isinstance(self.ensemble, OneByOne):
             return _joined([one(part) for part in parts])
         with ThreadPoolExecutor(self._cores) as pool:
             return _joined(list(pool.map(one, parts)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import math
+import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -24,6 +25,9 @@ LONGEST = math.pi / 16
 
 STEPS, EVENTS = 20_000, 2_000
 """Most steps and most events in a stretch."""
+
+ONE = threading.Lock()
+"""CasADi may be called by one thread at a time."""
 
 OTHER = ctypes.CFUNCTYPE(
     ctypes.c_int, ctypes.c_double, *[ctypes.c_void_p] * 2, ctypes.c_int, *[ctypes.c_void_p] * 3
@@ -211,6 +215,11 @@ class Ensemble:
 
     def _other(self, tau: float, y: int, mode: int, count: int, surface: int, at: int, sign: int) -> int:
         """Begin a motion, or take it through an event, as `Follower` does; 0 where that fails."""
+        with ONE:
+            return self._changed(tau, y, mode, count, surface, at, sign)
+
+    def _changed(self, tau: float, y: int, mode: int, count: int, surface: int, at: int, sign: int) -> int:
+        """The same, one thread at a time."""
         try:
             n, surfaces = self.system.expressions.state.numel(), len(self.system.surfaces)
             values, modes = _view(y, self.width, float), _view(mode, surfaces, np.intc)
