@@ -31,7 +31,7 @@ SECTION ?=
 STALE ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help run test $(KINDS) apart kernels long dependencies survey survey-machines fuzz mutants bench report-paper report-trade report-extremes report-machines report-structures report-proof report-decide stale docs lint types layers wheel clean
+.PHONY: help run test $(KINDS) apart kernels long dependencies survey survey-machines fuzz mutants bench report-paper report-trade report-extremes report-machines report-structures report-proof report-decide report-motions stale docs lint types layers wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
@@ -81,7 +81,7 @@ mutants: $(VENV)/.installed-mutants ## Change the code at random, see that tests
 bench: $(VENV)/.installed-dev ## Run the benchmarks, compare with the last record
 	$(ONE_THREAD) $(BIN)/python -m pytest reports/benchmarks -q -rs -W default::pytest.PytestWarning $(BENCHMARK)
 
-report-paper report-trade report-extremes report-machines report-structures report-proof report-decide: $(VENV)/.installed-dev ## Compute the page of a study anew (SECTION="NAME ...", STALE=1)
+report-paper report-trade report-extremes report-machines report-structures report-proof report-decide report-motions: $(VENV)/.installed-dev ## Compute the page of a study anew (SECTION="NAME ...", STALE=1)
 	$(BIN)/python -m reports.studies.$(@:report-%=%) $(if $(SECTION),--only $(SECTION)) $(if $(STALE),--stale)
 
 stale: $(VENV)/.installed-dev ## List sections of pages whose engine has changed since

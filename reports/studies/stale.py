@@ -10,6 +10,7 @@ from reports.app.console import table
 from reports.studies.decide.page import REPORT as DECIDE
 from reports.studies.extremes.page import REPORT as EXTREMES
 from reports.studies.machines.page import REPORT as MACHINES
+from reports.studies.motions.page import REPORT as MOTIONS
 from reports.studies.pages.content import Kept
 from reports.studies.pages.engine import ROOT, commit_of, commits_since, current, sources
 from reports.studies.pages.page import KEPT, Page
@@ -18,7 +19,7 @@ from reports.studies.proof.page import REPORT as PROOF
 from reports.studies.structures.page import REPORT as STRUCTURES
 from reports.studies.trade.page import REPORT as TRADE
 
-REPORTS = (PAPER, TRADE, EXTREMES, MACHINES, STRUCTURES, PROOF, DECIDE)
+REPORTS = (PAPER, TRADE, EXTREMES, MACHINES, STRUCTURES, PROOF, DECIDE, MOTIONS)
 
 TEXTS = ("tests/survey", "tests/mutants")
 """Folders of pages that name the commit of their engine in the text, for all that is on them."""

@@ -19,7 +19,7 @@ import symbolic as sym
 NAMES = ("c", "k", "k3", "kg", "gap", "low", "F", "Omega")
 """Parameters of an oscillator, in the order of judge.c."""
 
-PERIODS, STEPS, KEPT = 600, 300, 48
+PERIODS, STEPS, KEPT = 400, 200, 48
 """Periods that motions are followed, steps in each, and the last ones that are looked at."""
 
 SAME = 1e-3
