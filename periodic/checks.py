@@ -98,6 +98,17 @@ def between(name: str, value: Any, low: float, high: float) -> float:
     return float(value)
 
 
+def two(name: str, value: Any) -> tuple[float, float]:
+    """Return two finite numbers, the first the smaller. Raises ValueError for anything else."""
+    try:
+        low, high = (number(name, each) for each in value)
+    except (TypeError, ValueError):
+        low, high = np.inf, -np.inf
+    if not -np.inf < low < high < np.inf:
+        raise ValueError(f"{name} is {shown(value)}; it must be two finite numbers, the first the smaller")
+    return low, high
+
+
 def whole(name: str, value: Any, least: int = 1) -> int:
     """Return a whole number that is large enough. Raises ValueError for any other."""
     counts = isinstance(value, int | np.integer) and not isinstance(value, bool | np.bool_)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from periodic.checks import number, one_of, whole
+from periodic.checks import one_of, two, whole
 from periodic.correction.outcome import FAILURES
 from periodic.correction.tolerance import Accuracy
 from periodic.display.meter import meter
@@ -90,9 +90,8 @@ def atlas(
     ValueError
         For what is not allowed.
     """
-    place, (low, high) = index_of(system, parameter), (number("bounds", end) for end in bounds)
-    if not -np.inf < low < high < np.inf:
-        raise ValueError(f"bounds are {bounds!r}; they must be two finite numbers, the first the smaller")
+    place = index_of(system, parameter)
+    low, high = two("bounds", bounds)
     if parameter in (values or {}):
         raise ValueError(f"values has {parameter!r}, over which the atlas is; it must be left out")
     whole("diagram", diagram, 2), whole("branches", branches)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.checks import one_of, whole
+from periodic.checks import number, one_of, whole
 from periodic.correction.tolerance import Accuracy
 from periodic.display.meter import meter
 from periodic.orbit.scheme import Array
@@ -173,7 +173,7 @@ def _on_plane(box: Box, plane: Sequence[str], grid: Sequence[int], at: Mapping[s
         k = box.names.index(one_of("a state in at", name, box.names))
         if k in columns:
             raise ValueError(f"at has {name!r}, which is a state of the plane; it must be another")
-        state[k] = float(value) / box.unit[k]
+        state[k] = number(f"at[{name!r}]", value) / box.unit[k]
     middles = [
         box.low[k] + box.width[k] * (np.arange(count) + 0.5) / count
         for k, count in zip(columns, counts, strict=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.checks import named, shown
+from periodic.checks import named, two
 from periodic.orbit.layout import layout_of
 from periodic.orbit.scheme import Array
 from periodic.system import System, resets_of
@@ -80,19 +80,6 @@ def box_of(
     for name, ends in named("box", {} if given is None else given, "ranges of states").items():
         if name not in names:
             raise ValueError(f"box has {name!r}; it must be one of {', '.join(names)}")
-        k, values = names.index(name), _ends(name, ends)
-        low[k], high[k] = values / unit[k]
+        k = names.index(name)
+        low[k], high[k] = np.array(two(f"box[{name!r}]", ends)) / unit[k]
     return Box(names, unit, low, high)
-
-
-def _ends(name: str, given: object) -> Array:
-    """Both ends of a range."""
-    try:
-        values = np.array(given, dtype=float)
-    except (TypeError, ValueError):
-        values = np.zeros(0)
-    if values.shape != (2,) or not np.isfinite(values).all() or not values[0] < values[1]:
-        raise ValueError(
-            f"box[{name!r}] is {shown(given)}; it must be two finite numbers, the first the smaller"
-        )
-    return values

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from periodic.checks import one_of, whole
+from periodic.checks import named, number, one_of, whole
 from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
@@ -193,9 +193,9 @@ def beginning(system: System, parameter: Array, start: Mapping[str, float] | Non
         return rest
     names = [state.name for state in system.states]
     unit = box_of(system, parameter, None, np.array([rest, rest])).unit
-    for name, value in start.items():
-        one_of("a state in start", name, names)
-        rest[names.index(name)] = float(value) / unit[names.index(name)]
+    for name, value in named("start", start, "states").items():
+        k = names.index(one_of("a state in start", name, names))
+        rest[k] = number(f"start of {name}", value) / unit[k]
     if not np.isfinite(rest).all():
         raise ValueError(f"start is {dict(start)}; its values must be finite")
     return rest

@@ -69,4 +69,4 @@ def motions(
     """
     search = search_of(system, values, box, periods, starts, settle, places, seed, tol)
     with meter("looking for motions", "parts of it") as show:
-        return search.run(dict(along or {}), lambda said: show(1, said))
+        return search.run({} if along is None else along, lambda said: show(1, said))

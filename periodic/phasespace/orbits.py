@@ -146,12 +146,14 @@ class Completion:
         for variable, value in zip(self.system.parameters, self.crowd.parameter, strict=True):
             si = float(value * variable.scale)
             for way in (1, -1):
-                other = si * (1 + way * BESIDE)
+                other = si * (1 + way * BESIDE) if si else way * BESIDE
                 with contextlib.suppress(ValueError):
                     check_value(variable, other)
-                    if si != 0 and variable.name != self.frequency:
+                    if variable.name != self.frequency:
                         return variable.name, (si, other)
-        raise ValueError("all parameters of the system are 0; one must have another value")
+        raise ValueError(
+            "the system has no parameter but its omega; orbits need one more, which need not do anything"
+        )
 
 
 def _rounds(orbit: Orbit) -> int:

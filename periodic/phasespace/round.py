@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from periodic.checks import two
 from periodic.correction.condition import Condition
 from periodic.correction.outcome import FAILURES
 from periodic.orbit.orbit import FORCED
@@ -28,7 +29,7 @@ class Round:
         """Add what the branches have at the parameter's value; return what was tried, in words."""
         system = self.settling.crowd.system
         value = float(self.settling.crowd.parameter[index_of(system, self.parameter)])
-        low, high = sorted(self.bounds)
+        low, high = two(f"along[{self.parameter!r}]", self.bounds)
         if not low < value < high:
             raise ValueError(
                 f"along[{self.parameter!r}] is {self.bounds}; it must have the value, {value:g}, inside"

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from periodic.checks import positive, whole
+from periodic.checks import named, positive, whole
 from periodic.conditions.phase import PhaseCondition, excited
 from periodic.correction.condition import Condition
 from periodic.orbit.orbit import FORCED
@@ -93,7 +93,7 @@ class Search:
         if self.places:
             tried += [self._unstable(settling), Manifolds(settling).run()]
             say(f"{len(settling.orbits)} orbits with unstable ones")
-        for name, bounds in along.items():
+        for name, bounds in named("along", along, "ranges of parameters").items():
             tried.append(Round(settling, name, bounds, self.tol, self._determined).run())
         made = [self.motion(one, self.starts) for one in settling.orbits.each]
         made += [others.motion(k, int((labels == k).sum()), self.starts) for k in range(len(others.found))]

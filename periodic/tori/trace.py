@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from periodic.checks import number, whole
+from periodic.checks import number, two, whole
 from periodic.display.meter import meter
 from periodic.orbit.layout import layout_of
 from periodic.orbit.scheme import Array
@@ -101,7 +101,7 @@ def traced(
     check_system(system)
     free = index_of(system, parameter)
     scale = layout_of(system).parameters[free].scale
-    low, high = _bounds(bounds)
+    low, high = two("bounds", bounds)
     given = torus.parameter.copy()
     for name in values or {}:
         given[index_of(system, name)] = parameters(system, values)[index_of(system, name)]
@@ -282,14 +282,6 @@ def through(before: Section, after: Section) -> bool:
     """Return whether a torus has shrunk to an orbit between two, and grown again on the other side of it."""
     one, other = (torus.states - torus.states.mean(axis=0) for torus in (before, after))
     return bool((one * other).sum() < 0)
-
-
-def _bounds(bounds: tuple[float, float]) -> tuple[float, float]:
-    """The range of the parameter. Raises ValueError."""
-    low, high = (number("bounds", value) for value in bounds)
-    if not -np.inf < low < high < np.inf:
-        raise ValueError(f"bounds are {bounds!r}; they must be two finite numbers, the first the smaller")
-    return low, high
 
 
 def _point(family: Family, torus: Section, value: float, label: str) -> TorusPoint:

@@ -65,7 +65,7 @@ def test_words_and_picture(tmp_path: Path) -> None:
 def test_refusals() -> None:
     """Assert the sentences for what is not allowed."""
     system = oscillator()
-    with pytest.raises(ValueError, match=r"bounds are \(2, 1\); they must be two finite numbers"):
+    with pytest.raises(ValueError, match=r"bounds is \(2, 1\); it must be two finite numbers"):
         per.atlas(system, "Omega", (2, 1))
     with pytest.raises(ValueError, match="values has 'Omega', over which the atlas is; it must be left out"):
         per.atlas(system, "Omega", (1, 2), {"Omega": 1.0})

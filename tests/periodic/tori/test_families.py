@@ -175,5 +175,5 @@ def test_refusals() -> None:
         per.trace(two_forces(), "eta", (1.0, 2.0), guess=torus, tol=1e-3)  # type: ignore[call-overload]
     with pytest.raises(ValueError, match="start is 3; it must lie within the bounds 1 to 2"):
         per.trace(two_forces(), "eta", (1.0, 2.0), guess=torus, start=3.0)
-    with pytest.raises(ValueError, match=r"bounds are \(2, 1\); they must be two finite numbers"):
+    with pytest.raises(ValueError, match=r"bounds is \(2, 1\); it must be two finite numbers"):
         per.trace(two_forces(), "eta", (2, 1), guess=torus)
