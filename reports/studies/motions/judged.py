@@ -9,7 +9,7 @@ from typing import Any
 from reports.studies.motions.judge import Oscillator, found, missed
 from reports.studies.pages.content import Found, Kept, Section, Tell
 
-OSCILLATORS, STARTS = 50, 4000
+OSCILLATORS, STARTS = 50, 2000
 """How many oscillators, and starts of the judge for each."""
 
 LEAST = 0.005
