@@ -13,7 +13,7 @@ from periodic.orbit.scheme import Array
 from periodic.phasespace.birkhoff import DIGITS, digits, rotation_number
 from periodic.phasespace.clocks import Clock
 from periodic.phasespace.crowd import Crowd
-from periodic.phasespace.lyapunov import SIGMAS, exponents_of, rate_of
+from periodic.phasespace.lyapunov import SIGMAS, LyapunovError, exponents_of, rate_of
 from periodic.phasespace.motion import Motion, Sort, interval
 from periodic.phasespace.settle import Settling
 from periodic.system.ensembles import FOLLOWED
@@ -21,7 +21,7 @@ from periodic.system.ensembles import FOLLOWED
 LENGTHS = (4000, 8000, 16000, 32000)
 """Periods of a motion from which it is told what it is: more where fewer do not show a torus."""
 
-LYAPUNOV = 1000
+LYAPUNOV = 2000
 """Periods over which its exponent is averaged."""
 
 POINTS = 400
@@ -83,29 +83,38 @@ class Attractors:
         )
 
     def _described(self, y: Array, modes: Any) -> Attractor:
-        """A motion on an attractor, followed further."""
-        sections, y, modes = np.zeros((0, len(self.unit))), y[None], modes[None]
+        """A motion on an attractor, followed further: chaotic where neighbours part, whatever averages say.
+
+        Chaos in bands that a motion visits in turn has averages as good as a torus'.
+        """
+        sections, y, modes, smooth = np.zeros((0, len(self.unit))), y[None], modes[None], False
         width = self.clock.stretch * self.clock.between
         for length in LENGTHS:
             path = self.crowd.run(y, length - len(sections), width, modes=modes, keep=True)
             assert path.sections is not None
             sections = np.concatenate([sections, path.sections[0, 1:, : len(self.unit)]])
             if path.outcome[0] != FOLLOWED:
-                return Attractor(
-                    sections[:0], Sort.OPEN, math.nan, math.nan, "it was lost when followed further"
-                )
+                why = "it was lost when followed further"
+                return Attractor(sections[:0], Sort.OPEN, math.nan, math.nan, why)
             y, modes = path.ends, path.modes
             size = np.ptp(sections, axis=0)
-            if digits(sections, np.where(size > 0, size, 1.0)) > DIGITS:
-                turns = rotation_number(sections, self.unit) if self.clock.whole else math.nan
-                return Attractor(sections, Sort.TORUS, 0.0, turns)
-        growth = exponents_of(self.crowd, y, modes, 1, LYAPUNOV)
-        value, error = rate_of(self.crowd) * growth.mean, rate_of(self.crowd) * growth.error
-        if value[0] > SIGMAS * error[0]:
-            return Attractor(sections, Sort.CHAOTIC, float(value[0]), math.nan)
-        largest = f"largest Lyapunov exponent {value[0]:.2g} +- {error[0]:.1g} 1/s"
-        why = f"neither torus nor chaos is certain: {largest}"
-        return Attractor(sections, Sort.OPEN, float(value[0]), math.nan, why)
+            smooth = digits(sections, np.where(size > 0, size, 1.0)) > DIGITS
+            if smooth:
+                break
+        try:
+            growth = exponents_of(self.crowd, y, modes, 1, LYAPUNOV)
+        except LyapunovError as lost:
+            return Attractor(sections, Sort.OPEN, math.nan, math.nan, str(lost))
+        value, error = (float(rate_of(self.crowd) * each[0]) for each in (growth.mean, growth.error))
+        if value > SIGMAS * error:
+            return Attractor(sections, Sort.CHAOTIC, value, math.nan)
+        if smooth:
+            turns = rotation_number(sections, self.unit) if self.clock.whole else math.nan
+            return Attractor(sections, Sort.TORUS, value, turns)
+        largest = f"largest Lyapunov exponent {value:.2g} +- {error:.1g} 1/s"
+        return Attractor(
+            sections, Sort.OPEN, value, math.nan, f"neither torus nor chaos is certain: {largest}"
+        )
 
     def motion(self, k: int, starts: int, of: int) -> Motion:
         """Return one of them as it is given."""

@@ -70,11 +70,11 @@ class Oscillator:
         ]
         return sym.compile(sym.combine(parts))
 
-    def judged(self, starts: int) -> list[Attractor]:
+    def judged(self, starts: int, steps: int = STEPS) -> list[Attractor]:
         """What the judge finds from a number of random starts, the largest basins first."""
         random = np.random.default_rng(1000 + self.seed)
         y = random.uniform(-BOX, BOX, (starts, 2))
-        sections = _followed(np.array([self.values[name] for name in NAMES]), y)
+        sections = _followed(np.array([self.values[name] for name in NAMES]), y, steps)
         return _sorted(sections)
 
 
@@ -138,14 +138,14 @@ def _one(states: Any, known: Any, periods: int) -> bool:
     return bool(np.abs(states[:, None] - known).max(axis=2).min(axis=1).max() < SAME * 2 * BOX)
 
 
-def _followed(parameters: Any, y: Any) -> Any:
+def _followed(parameters: Any, y: Any, steps: int) -> Any:
     """Sections (S, KEPT, 2) of motions from y (S, 2), on two cores."""
     parts = np.array_split(y, 16)
 
     def one(part: Any) -> Any:
         part, sections = np.ascontiguousarray(part), np.empty((len(part), KEPT, 2))
         given = [a.ctypes.data_as(ctypes.c_void_p) for a in (parameters, part, sections)]
-        _judge().settle(len(part), PERIODS, STEPS, KEPT, *given)
+        _judge().settle(len(part), PERIODS, steps, KEPT, *given)
         return sections
 
     with ThreadPoolExecutor(2) as pool:

@@ -6,11 +6,14 @@ import time
 from collections.abc import Mapping
 from typing import Any
 
-from reports.studies.motions.judge import Oscillator, found, missed
+from reports.studies.motions.judge import STEPS, Oscillator, found, missed
 from reports.studies.pages.content import Found, Kept, Section, Tell
 
-OSCILLATORS, STARTS = 50, 2000
-"""How many oscillators, and starts of the judge for each."""
+OSCILLATORS, STARTS = range(30, 50), 2000
+"""Seeds of the oscillators, and starts of the judge for each."""
+
+FINER = 6
+"""How many times as many steps the judge takes on a second look: at a kink its method is of low order."""
 
 LEAST = 0.005
 """Share of the box from which an attractor must not be missed."""
@@ -19,12 +22,15 @@ LEAST = 0.005
 def judged(tell: Tell) -> Found:
     """Compute what is found of each oscillator, and what the judge finds."""
     rows: list[dict[str, Any]] = []
-    for seed in range(OSCILLATORS):
+    for seed in OSCILLATORS:
         tell(f"oscillator {seed}")
         oscillator, begun = Oscillator(seed), time.perf_counter()
         motions = found(oscillator)
         seconds = time.perf_counter() - begun
         attractors = oscillator.judged(STARTS)
+        first = missed(oscillator, motions, attractors)
+        if first:
+            attractors = oscillator.judged(STARTS, FINER * STEPS)
         rows.append(
             {
                 "seed": seed,
@@ -32,6 +38,7 @@ def judged(tell: Tell) -> Found:
                 "unstable": len(motions.unstable),
                 "undecided": motions.undecided,
                 "seconds": seconds,
+                "first": len(first),
                 "judge": [[each.periods, each.share] for each in attractors],
                 "missed": [[each.periods, each.share] for each in missed(oscillator, motions, attractors)],
             }
@@ -51,6 +58,8 @@ def _context(kept: Kept) -> Mapping[str, Any]:
     several = [row for row in kept.rows if len(row["judge"]) > 1 or row["missed"]]
     return {
         "starts": STARTS,
+        "again": [row["seed"] for row in kept.rows if row["first"]],
+        "finer": FINER,
         "table": [
             [
                 row["seed"],

@@ -10,7 +10,7 @@ import pytest
 import periodic as per
 import symbolic as sym
 from reports.studies.motions.disc import BOX, RPM
-from reports.studies.motions.judge import Oscillator, found, missed
+from reports.studies.motions.judge import STEPS, Oscillator, found, missed
 from reports.studies.motions.page import REPORT
 from reports.studies.motions.tori import coupled
 
@@ -24,17 +24,17 @@ def test_nothing_large_is_missed() -> None:
     kept = REPORT.kept(FOLDER)["judged"]
     above = [share for row in kept.rows for _, share in row["missed"] if share > 0.005]
     assert len(above) == kept.numbers["missed"] == 0
-    assert kept.numbers["oscillators"] == 50 and kept.numbers["attractors"] > 50
+    assert kept.numbers["oscillators"] == 20 and kept.numbers["attractors"] > 25
 
 
-@pytest.mark.parametrize("seed", [0, 6])
+@pytest.mark.parametrize("seed", [38, 44])
 def test_judge_and_search_are_fresh(seed: int) -> None:
     """Assert the attractors of an oscillator anew, and that the judge's few starts lead to no other."""
-    row = REPORT.kept(FOLDER)["judged"].rows[seed]
+    (row,) = [row for row in REPORT.kept(FOLDER)["judged"].rows if row["seed"] == seed]
     oscillator = Oscillator(seed)
     motions = found(oscillator)
     assert [motion.periods for motion in motions.stable] == [periods for periods, _ in row["stable"]]
-    assert not missed(oscillator, motions, oscillator.judged(60))
+    assert not missed(oscillator, motions, oscillator.judged(60, 6 * STEPS))
 
 
 def test_known_systems() -> None:
