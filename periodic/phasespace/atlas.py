@@ -25,6 +25,12 @@ from periodic.tracing.watch import Watch
 NEAR = 1e-3
 """Distance of an orbit's states from a branch's, in widths of the box, where it is on it."""
 
+SETTLE = 1000
+"""Most periods that a motion is followed."""
+
+BRANCHES = 16
+"""Most branches that are traced."""
+
 POINTS = 2000
 """Most points of a branch in each direction."""
 
@@ -45,9 +51,6 @@ def atlas(
     periods: int = 4,
     starts: int = 64,
     places: int = 16,
-    settle: int = 1000,
-    branches: int = 16,
-    seed: int = 0,
     tol: float = Accuracy.STANDARD,
 ) -> Atlas:
     """Return what an excited system can do over a parameter.
@@ -73,11 +76,7 @@ def atlas(
         Values at which motions are looked for.
     diagram : int
         Values of the diagram beneath, of motions from a few starts each.
-    periods, starts, places, settle
-        As in `motions`.
-    branches : int
-        Most branches that are traced.
-    seed, tol
+    periods, starts, places, tol
         As in `motions`.
 
     Returns
@@ -94,13 +93,14 @@ def atlas(
     low, high = two("bounds", bounds)
     if parameter in (values or {}):
         raise ValueError(f"values has {parameter!r}, over which the atlas is; it must be left out")
-    whole("diagram", diagram, 2), whole("branches", branches)
+    whole("diagram", diagram, 2)
     names = [each.name for each in system.states]
     column = names.index(names[0] if state is None else one_of("state", state, names))
     at = np.linspace(low, high, whole("count", count, 2))
-    given = (periods, starts, settle, places, seed, tol)
-    first = search_of(system, {**(values or {}), parameter: low}, box, *given)
-    chart = Chart(first, parameter, place, at, branches)
+    first = search_of(
+        system, {**(values or {}), parameter: low}, box, periods, starts, SETTLE, places, 0, tol
+    )
+    chart = Chart(first, parameter, place, at)
     with meter(f"atlas over {parameter}", "values", len(at) + diagram) as show:
         for k, value in enumerate(at):
             found = chart.look(k, float(value))
@@ -127,7 +127,6 @@ class Chart:
     parameter: str
     place: int
     at: Array
-    most: int
     sheets: list[Sheet] = field(default_factory=list)
     motions: list[Motions] = field(default_factory=list)
 
@@ -138,7 +137,7 @@ class Chart:
         for motion in found:
             if motion.point is None or motion.sort != Sort.PERIODIC:
                 continue
-            if self._on(k, motion) is None and len(self.sheets) < self.most:
+            if self._on(k, motion) is None and len(self.sheets) < BRANCHES:
                 self._trace(k, value, motion)
             if (on := self._on(k, motion)) is not None and on[1] >= 0:
                 on[0].shares[on[1], k] += motion.share
