@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +20,6 @@ from periodic.phasespace.partition import Basins
 from periodic.phasespace.picture import Elsewhere
 from periodic.phasespace.search import Search, search_of
 from periodic.system import System
-
-if TYPE_CHECKING:
-    pass
 
 AT_ONCE = 8192
 """Motions that are followed together."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 import scipy
@@ -138,7 +139,7 @@ class Motions(Sequence[Motion]):
     def __len__(self) -> int:
         return len(self.motions)
 
-    def __getitem__(self, index):  # type: ignore[no-untyped-def]
+    def __getitem__(self, index: Any) -> Any:
         return self.motions[index]
 
     def __iter__(self) -> Iterator[Motion]:

@@ -10,6 +10,7 @@ from periodic.correction.condition import Condition
 from periodic.correction.outcome import FAILURES
 from periodic.orbit.orbit import FORCED
 from periodic.phasespace.settle import Settling
+from periodic.results.branch import Branch
 from periodic.system import index_of
 from periodic.tracing.trace import trace
 from periodic.tracing.watch import Watch
@@ -65,7 +66,7 @@ class Round:
             f"{found} more orbits"
         )
 
-    def _added(self, branch, value: float) -> set[int]:  # type: ignore[no-untyped-def]
+    def _added(self, branch: Branch, value: float) -> set[int]:
         """Add the branch's orbits at the value; the indices of those that need not be traced themselves."""
         on_it = set[int]()
         for point in branch:

@@ -28,11 +28,11 @@ from periodic.tori.section import Section, kernel, tail_of
 DIFFERENCE = 1e-5
 """Step of differences in the period and in a parameter, as a part of their sizes."""
 
+STEP = 1e-6
+"""Phase (rad) by which a motion goes on for its rates."""
+
 FAR = 1e3
 """By how much equations are off where Newton's method has lost the torus."""
-
-STANDING = 1e-9
-"""Size of Newton's last step beside that of the unknowns: derivatives in a parameter are differences."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,10 +107,6 @@ class Invariance:
 
     def _crowd(self, parameter: Array) -> Crowd:
         return Crowd(self.system, parameter, self.tolerance)
-
-
-STEP = 1e-6
-"""Phase (rad) by which a motion goes on for its rates."""
 
 
 def angles(count: int) -> Array:
