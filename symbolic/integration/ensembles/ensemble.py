@@ -6,8 +6,8 @@ import ctypes
 import math
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -96,7 +96,6 @@ class Ensemble:
     tolerance: float
     largest: float
     library: ctypes.CDLL
-    _raised: list[BaseException] = field(default_factory=list, init=False)
 
     @cached_property
     def width(self) -> int:
@@ -154,13 +153,13 @@ class Ensemble:
         label, outcome = np.empty(many, dtype=np.intc), np.empty(many, dtype=np.intc)
         changes = np.zeros_like(own)
         places, whose, units, radius = targets or (np.zeros((0, 1)), (), np.ones(1), 0.0)
-        places, of = np.ascontiguousarray(places, dtype=float), np.array(whose, dtype=int)
+        places, of = np.ascontiguousarray(places, dtype=float), np.array(whose, dtype=np.intp)
         unit = np.ascontiguousarray(units, dtype=float)
         given = np.ascontiguousarray(self.parameter, dtype=float)
-        callback = OTHER(self._other)
-        self._raised.clear()
+        raised: list[BaseException] = []
+        callback = OTHER(partial(self._other, raised))
         with interruptible():
-            self._follow(
+            failed = self._follow(
                 many,
                 count,
                 phase,
@@ -191,8 +190,10 @@ class Ensemble:
                 _at(outcome),
                 _at(changes),
             )
-        if self._raised:
-            raise self._raised[0]
+        if failed:
+            raise MemoryError(f"{many} motions with {w.shape[1]} tangents")
+        if raised:
+            raise raised[0]
         return Followed(y, own[:, :surfaces], outcome, label, sections, growth, w, changes[:, :surfaces])
 
     @cached_property
@@ -213,37 +214,37 @@ class Ensemble:
     def _switching(self) -> Switching:
         return Switching(self.system, self.parameter, self.tolerance)
 
-    def _other(self, tau: float, y: int, mode: int, count: int, surface: int, at: int, sign: int) -> int:
-        """Begin a motion, or take it through an event, as `Follower` does; 0 where that fails."""
-        with ONE:
-            return self._changed(tau, y, mode, count, surface, at, sign)
-
-    def _changed(self, tau: float, y: int, mode: int, count: int, surface: int, at: int, sign: int) -> int:
-        """The same, one thread at a time."""
+    def _other(self, raised: list[BaseException], *given: Any) -> int:
+        """Begin a motion, or take it through an event; 0 where that fails, by what is `raised` if any."""
         try:
-            n, surfaces = self.system.expressions.state.numel(), len(self.system.surfaces)
-            values, modes = _view(y, self.width, float), _view(mode, surfaces, np.intc)
-            if count < 0:
-                state, after = self._switching.begin(tau, values[:n])
-            else:
-                each = zip(*(_view(a, count, np.intc) for a in (surface, at, sign)), strict=True)
-                fallen = [Guard(*map(int, one)) for one in each]
-                before: Modes = tuple(int(k) for k in modes)
-                state, after = self._switching.passed(fallen, before, tau, values[:n].copy())
-            if not np.array_equal(state, values[:n]):
-                whole = np.concatenate([state, values[n:]])
-                values[:] = self.system.field.on_constraints(whole, tau, self.parameter)
-            modes[:] = after
+            with ONE:
+                self._changed(*given)
         except IntegrationError:
             return 0
         except BaseException as error:  # C cannot carry it: it is raised after the call
-            self._raised.append(error)
+            raised.append(error)
             return 0
         return 1
 
+    def _changed(self, tau: float, y: int, mode: int, count: int, surface: int, at: int, sign: int) -> None:
+        """Begin a motion, or take it through an event, as `Follower` does. Raises IntegrationError."""
+        n, surfaces = self.system.expressions.state.numel(), len(self.system.surfaces)
+        values, modes = _view(y, self.width, float), _view(mode, surfaces, np.intc)
+        if count < 0:
+            state, after = self._switching.begin(tau, values[:n])
+        else:
+            each = zip(*(_view(a, count, np.intc) for a in (surface, at, sign)), strict=True)
+            fallen = [Guard(*map(int, one)) for one in each]
+            before: Modes = tuple(int(k) for k in modes)
+            state, after = self._switching.passed(fallen, before, tau, values[:n].copy())
+        if not np.array_equal(state, values[:n]):
+            whole = np.concatenate([state, values[n:]])
+            values[:] = self.system.field.on_constraints(whole, tau, self.parameter)
+        modes[:] = after
+
     @cached_property
     def _follow(self) -> Callable[..., int]:
-        whole, real, array = ctypes.c_long, ctypes.c_double, ctypes.c_void_p
+        whole, real, array = ctypes.c_ssize_t, ctypes.c_double, ctypes.c_void_p
         call = self.library.follow
         call.argtypes = [whole, whole, real, real, array, real, real, real, *[whole] * 7, OTHER]
         call.argtypes += [*[array] * 5, whole, array, array, array, real, array, array, array]

@@ -21,7 +21,7 @@ typedef int (*Other)(double tau, double *y, int *mode, int count, const int *sur
 
 typedef struct {
     double tolerance, largest, longest;
-    long most_steps, most_events;
+    ptrdiff_t most_steps, most_events;
     int tangents, begun_here, simple;
     double kept_field[KEPT_FIELD + 1], kept_guards[KEPT_GUARDS + 1], kept_slope[KEPT_SLOPE + 1];
     double kept_gradient[KEPT_GRADIENT + 1], kept_reset[KEPT_RESET + 1], kept_reset_slope[KEPT_RESET_SLOPE + 1];
@@ -34,7 +34,8 @@ typedef struct {
     int mode[SURFACES + 1], count, surface[GUARDS], at[GUARDS], sign[GUARDS];
     double least[GUARDS], size[GUARDS], g[GUARDS], r[GUARDS];
     int stiff, marks, clean, fresh;
-    long steps, events, changes[SURFACES + 1];
+    ptrdiff_t steps, events;
+    int changes[SURFACES + 1];
     double *y, *next, *inner, *k[STAGES + 1], *jacobian; /* y is followed by its tangents */
 } Motion;
 
@@ -277,7 +278,6 @@ static int changed_here(const Given *o, Motion *m, int count, const int *fallen)
         const int j = fallen[l], i = m->surface[j], mode = m->mode[i];
         if (KIND[i] == IMPACT && mode == STUCK) m->mode[i] = PLUS;
         else if (KIND[i] == IMPACT) {
-            memcpy(mapped, m->y, sizeof mapped);
             reset(SWITCH[i], m->y, m->tau, m->side, o->kept_reset, mapped);
             memcpy(m->y, mapped, sizeof mapped);
             turned(o, m);
@@ -307,8 +307,7 @@ static int left_over(const Given *o, Motion *m, int count, const int *fallen) {
         const int i = m->surface[fallen[l]];
         if (KIND[i] != IMPACT || m->mode[i] == STUCK) continue;
         Motion after = *m;
-        double y[N], mapped[N];
-        memcpy(y, m->y, sizeof y);
+        double mapped[N];
         reset(SWITCH[i], m->y, m->tau, m->side, o->kept_reset, mapped);
         after.y = mapped;
         if (settles(o, &after, i)) return 1;
@@ -423,7 +422,7 @@ static int fallen_first(const Given *o, Motion *m, double *h, double *g, double 
 
 /* ---- one motion ---- */
 
-static void taken(const Given *o, Motion *m, double h) {
+static void taken(Motion *m, double h) {
     double *held = m->y;
     m->y = m->next;
     m->next = held;
@@ -431,7 +430,6 @@ static void taken(const Given *o, Motion *m, double h) {
     m->k[0] = m->k[STAGES];
     m->k[STAGES] = held;
     m->tau += h;
-    (void)o;
 }
 
 static int sound(const Given *o, const double *y) {
@@ -445,7 +443,7 @@ static int sound(const Given *o, const double *y) {
 
 /* Follow a motion to a phase. */
 static int followed(const Given *o, Motion *m, double end) {
-    const long begun_steps = m->steps, begun_events = m->events;
+    const ptrdiff_t begun_steps = m->steps, begun_events = m->events;
     double g[GUARDS], r[GUARDS];
     while (end - m->tau > TINY * (1 + fabs(end))) {
         if (m->steps++ - begun_steps > o->most_steps) return SPENT;
@@ -467,7 +465,7 @@ static int followed(const Given *o, Motion *m, double end) {
         const double factor = error > 0 ? 0.9 * pow(error, -order) : 5;
         const double wanted = h * (factor > 5 ? 5 : factor);
         if (!m->count) {
-            taken(o, m, h);
+            taken(m, h);
             if (wanted > m->h || h >= m->h) m->h = wanted;
             continue;
         }
@@ -496,12 +494,12 @@ static int followed(const Given *o, Motion *m, double end) {
             for (int j = 0; j < m->count; j++)
                 if (j == first || (g[j] <= BESIDE * m->size[j] && r[j] < 0 && m->g[j] > BESIDE * m->size[j]))
                     fallen[count++] = j;
-            taken(o, m, at);
+            taken(m, at);
             if (!event(o, m, first, count, fallen)) return LOST;
             if (wanted > m->h) m->h = wanted;
             continue;
         }
-        taken(o, m, h);
+        taken(m, h);
         for (int j = 0; j < m->count; j++) {
             m->g[j] = g[j];
             m->r[j] = r[j];
@@ -514,7 +512,7 @@ static int followed(const Given *o, Motion *m, double end) {
 
 /* ---- tangents at the end of a stretch: orthonormal again (modified Gram and Schmidt), their growth ---- */
 
-/* The unknowns' part of the tangents as the constraints ask: rounding would leave them, and nothing draws it back. */
+/* The unknowns' part of the tangents as the constraints ask: rounding leaves them, and nothing draws it back. */
 static void admitted(const Given *o, Motion *m) {
     enum { UNKNOWNS = N - STATES };
     double slopes[UNKNOWNS * N + 1], matrix[UNKNOWNS * UNKNOWNS + 1], right[UNKNOWNS + 1];
@@ -562,11 +560,11 @@ static void begun(const Given *o, Motion *m) {
 }
 
 /* A motion's known end: within `radius` of a target at two ends of stretches one after the other. */
-static int arrived(const double *y, long targets, const double *target, const double *unit, double radius) {
-    for (long a = 0; a < targets; a++) {
+static ptrdiff_t arrived(const double *y, ptrdiff_t targets, const double *target, const double *unit, double radius) {
+    for (ptrdiff_t a = 0; a < targets; a++) {
         double apart = 0;
         for (int i = 0; i < STATES; i++) apart = greater(apart, fabs(y[i] - target[a * STATES + i]) / unit[i]);
-        if (apart <= radius) return (int)a;
+        if (apart <= radius) return a;
     }
     return -1;
 }
@@ -574,14 +572,16 @@ static int arrived(const double *y, long targets, const double *target, const do
 /* Follow `motions` motions over `count` stretches of `width`, each from `phase`.
 
    y (motions, N): in and out. modes (motions, SURFACES): in, where `given_modes`, and out. sections: (motions,
-   count + 1, N) where not NULL. growth: (motions, count, tangents), tangents (motions, tangents, N) where there
-   are any. changes (motions, SURFACES): of modes in the last stretch. Each motion stops early, `label` then says at which, where it arrives at one of `targets` places
-   (targets, STATES), of units (STATES,), and nowhere where label is -1. outcome: of each. */
-int follow(long motions, long count, double phase, double width, const double *parameter, double tolerance,
-           double largest, double longest, long most_steps, long most_events, long tangents, long raw, long begun_here,
-           long simple, long given_modes, Other other, double *y, int *modes, double *sections, double *growth,
-           double *tangent, long targets, const double *target, const long *of_target, const double *unit,
-           double radius, int *label, int *outcome, int *changes) {
+   count + 1, N) where not NULL, NaN what is not reached. growth: (motions, count, tangents), tangents (motions,
+   tangents, N) where there are any. changes (motions, SURFACES): of modes in the last stretch. A motion stops
+   early where it arrives at one of `targets` places (targets, STATES), in units (STATES,); `label` says whose
+   place that is, -1 of motions that arrive nowhere. outcome: of each. Returns 1 where there is no memory. */
+int follow(ptrdiff_t motions, ptrdiff_t count, double phase, double width, const double *parameter,
+           double tolerance, double largest, double longest, ptrdiff_t most_steps, ptrdiff_t most_events,
+           ptrdiff_t tangents, ptrdiff_t raw, ptrdiff_t begun_here, ptrdiff_t simple, ptrdiff_t given_modes,
+           Other other, double *y, int *modes, double *sections, double *growth, double *tangent,
+           ptrdiff_t targets, const double *target, const ptrdiff_t *of_target, const double *unit, double radius,
+           int *label, int *outcome, int *changes) {
     const size_t size = N * (1 + tangents);
     Given *o = calloc(1, sizeof *o);
     double *room = malloc(((STAGES + 4) * size + N * N + 1) * sizeof *room);
@@ -606,7 +606,7 @@ int follow(long motions, long count, double phase, double width, const double *p
     constraint_once(parameter, o->kept_constraint);
     reset_once(parameter, o->kept_reset);
     reset_slope_once(parameter, o->kept_reset_slope);
-    for (long s = 0; s < motions; s++) {
+    for (ptrdiff_t s = 0; s < motions; s++) {
         Motion motion = {.tau = phase, .h = 0.01}, *m = &motion;
         double *each = room;
         m->y = each;
@@ -623,15 +623,17 @@ int follow(long motions, long count, double phase, double width, const double *p
         m->fresh = 1;
         label[s] = -1;
         if (sections) memcpy(sections + s * (count + 1) * N, m->y, N * sizeof *y);
-        long c = 0;
-        for (; c < count && done == FOLLOWED; c++) {
+        ptrdiff_t reached = 0;
+        while (reached < count && done == FOLLOWED) {
+            const ptrdiff_t c = reached;
             memset(m->changes, 0, sizeof m->changes);
             done = followed(o, m, phase + (c + 1) * width);
             if (done != FOLLOWED) break;
+            reached++;
             if (m->fresh) entered(o, m);
             if (tangents && !raw) orthonormal(o, m, growth + (s * count + c) * tangents);
             if (sections) memcpy(sections + (s * (count + 1) + c + 1) * N, m->y, N * sizeof *y);
-            const int near = targets ? arrived(m->y, targets, target, unit, radius) : -1;
+            const ptrdiff_t near = targets ? arrived(m->y, targets, target, unit, radius) : -1;
             const int which = near < 0 ? -1 : (int)of_target[near];
             if (near >= 0 && which == before) {
                 label[s] = which;
@@ -639,13 +641,13 @@ int follow(long motions, long count, double phase, double width, const double *p
             }
             before = which;
         }
-        for (; sections && c < count; c++)
-            for (int i = 0; i < N && done != FOLLOWED; i++) sections[(s * (count + 1) + c + 1) * N + i] = NAN;
+        for (ptrdiff_t i = (reached + 1) * N; sections && i < (count + 1) * N; i++)
+            sections[s * (count + 1) * N + i] = NAN;
         memcpy(y + s * N, m->y, N * sizeof *y);
         memcpy(modes + s * SURFACES, m->mode, SURFACES * sizeof *modes);
         if (tangents) memcpy(tangent + s * tangents * N, m->y + N, tangents * N * sizeof *y);
         outcome[s] = done;
-        for (int i = 0; i < SURFACES; i++) changes[s * SURFACES + i] = (int)m->changes[i];
+        for (int i = 0; i < SURFACES; i++) changes[s * SURFACES + i] = m->changes[i];
     }
     free(o);
     free(room);
