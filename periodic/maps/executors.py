@@ -11,6 +11,7 @@ from concurrent.futures import BrokenExecutor, Executor, Future
 from typing import Any, Protocol
 
 from periodic.checks import whole
+from periodic.phasespace.crowd import cores
 
 CHUNKS_AHEAD = 10_000
 """Chunks given to a user's executor before the first is done: more than it has workers."""
@@ -161,14 +162,8 @@ def workers(executor: Executor | int | None) -> Workers:
             f"executor is {executor!r}; it must be a number of processes or a concurrent.futures.Executor, "
             f"as Client.get_executor() of dask.distributed and MPIPoolExecutor() of mpi4py.futures are"
         )
-    count = _cores() if executor is None else whole("executor", executor)
+    count = cores() if executor is None else whole("executor", executor)
     return Here() if count == 1 else Processes(count)
-
-
-def _cores() -> int:
-    """Cores that this process may use."""
-    allowed = getattr(os, "sched_getaffinity", None)
-    return len(allowed(0)) if allowed else os.cpu_count() or 1
 
 
 def died(error: BaseException) -> bool:

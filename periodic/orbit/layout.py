@@ -148,6 +148,28 @@ class Layout:
             raise ValueError(f"frequency {' * '.join(self.frequency)} is {found}; it must be positive")
         return found
 
+    def units(self, parameter: Array) -> dict[str, float]:
+        """Return SI values of one internal unit of each state, by name: x' is dx/dtau inside, dx/dt outside.
+
+        Parameters
+        ----------
+        parameter : ndarray, shape (p,)
+            Scaled parameters.
+
+        Returns
+        -------
+        dict of str to float
+            In the states' order.
+
+        Raises
+        ------
+        ValueError
+            Where there are velocities, and the system does not tell Omega.
+        """
+        columns = [self.column(q.name) for q in self.states]
+        omega = self.omega(parameter) if any(c.order for c in columns) else 1.0
+        return {c.name: c.scale * omega**c.order for c in columns}
+
     def column(self, name: str) -> Column:
         """Return where a named signal is found.
 

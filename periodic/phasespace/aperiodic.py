@@ -48,7 +48,9 @@ class Attractor:
     why: str = ""
 
     def has(self, sections: Array, unit: Array) -> bool:
-        """Return whether a motion is on it."""
+        """Return whether a motion is on it; on one that was lost none is."""
+        if not len(self.sections):
+            return False
         tree = KDTree(self.sections / unit)
         own = np.asarray(tree.query(self.sections[-POINTS:] / unit, k=2)[0])[:, 1]
         size = float(np.ptp(self.sections / unit, axis=0).max())
@@ -109,7 +111,7 @@ class Attractors:
         if value > SIGMAS * error:
             return Attractor(sections, Sort.CHAOTIC, value, math.nan)
         if smooth:
-            turns = rotation_number(sections, self.unit) if self.clock.whole else math.nan
+            turns = rotation_number(sections, size) if self.clock.whole else math.nan
             return Attractor(sections, Sort.TORUS, value, turns)
         largest = f"largest Lyapunov exponent {value:.2g} +- {error:.1g} 1/s"
         return Attractor(

@@ -13,7 +13,8 @@ from periodic.correction.tolerance import Accuracy
 from periodic.display.meter import meter
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
-from periodic.phasespace.charted import Atlas, Sheet
+from periodic.phasespace.box import box_of
+from periodic.phasespace.charted import Atlas, Sheet, stretches
 from periodic.phasespace.motion import Motion, Motions, Sort
 from periodic.phasespace.search import Search, search_of
 from periodic.results.branch import Branch
@@ -24,6 +25,9 @@ from periodic.tracing.watch import Watch
 
 NEAR = 1e-3
 """Distance of an orbit's states from a branch's, in widths of the box, where it is on it."""
+
+FEW = 6
+"""Starts at each value of the diagram."""
 
 SETTLE = 1000
 """Most periods that a motion is followed."""
@@ -89,7 +93,7 @@ def atlas(
     ValueError
         For what is not allowed.
     """
-    place = index_of(system, parameter)
+    index_of(system, parameter)
     low, high = two("bounds", bounds)
     if parameter in (values or {}):
         raise ValueError(f"values has {parameter!r}, over which the atlas is; it must be left out")
@@ -100,113 +104,118 @@ def atlas(
     first = search_of(
         system, {**(values or {}), parameter: low}, box, periods, starts, SETTLE, places, 0, tol
     )
-    chart = Chart(first, parameter, place, at)
+    if first.frequency:
+        raise ValueError("the system is not excited: its equations do not depend on the phase; they must")
+    chart = Chart(first, parameter, at)
     with meter(f"atlas over {parameter}", "values", len(at) + diagram) as show:
         for k, value in enumerate(at):
             found = chart.look(k, float(value))
             show(1, f"{len(found)} motions at {value:.6g}, {len(chart.sheets)} branches")
         dots = [chart.dots(float(value), column, show) for value in np.linspace(low, high, diagram)]
-    unit = first.box.unit[column]
     return Atlas(
         parameter,
         names[column],
         at,
         tuple(chart.motions),
         tuple(chart.sheets),
-        np.concatenate(dots) * [1.0, unit],
-        column,
-        float(unit),
+        np.concatenate(dots),
+        tuple(chart.remarks),
     )
 
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """What is known of a system over a parameter so far: branches with their orbits at the values `at`."""
+    """What is known of a system over a parameter so far: branches with their orbits at the values `at`.
 
-    search: Search
+    first: the search at the first value. remarks: what could not be done.
+    """
+
+    first: Search
     parameter: str
-    place: int
     at: Array
     sheets: list[Sheet] = field(default_factory=list)
     motions: list[Motions] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)
 
     def look(self, k: int, value: float) -> Motions:
         """Look for all motions at one of the values, and trace branches of those on none that is known."""
-        found = self._there(value).run({}, lambda said: None)
+        search = self._there(value)
+        found = search.run({}, lambda said: None)
         self.motions.append(found)
         for motion in found:
             if motion.point is None or motion.sort != Sort.PERIODIC:
                 continue
-            if self._on(k, motion) is None and len(self.sheets) < BRANCHES:
-                self._trace(k, value, motion)
-            if (on := self._on(k, motion)) is not None and on[1] >= 0:
+            if self._on(search, k, motion) is None:
+                self._trace(value, motion)
+            if (on := self._on(search, k, motion)) is not None and on[1] >= 0:
                 on[0].shares[on[1], k] += motion.share
         return found
 
     def dots(self, value: float, column: int, show: Callable[[int, str], None]) -> Array:
         """Return value and a state (K, 2) of settled motions from a few starts, at tau = 0."""
-        search = replace(self._there(value), starts=FEW)
+        search = self._there(value)
         crowd = search.crowd
         y = crowd.begin(search.box.draw(FEW, search.seed, crowd.system, crowd.parameter))
         settled = crowd.run(y, search.settle, FORCED)
         path = crowd.run(settled.ends, LOOKED, FORCED, modes=settled.modes, keep=True)
         assert path.sections is not None
-        states = path.sections[:, :, column].ravel()
+        states = search.box.unit[column] * path.sections[:, :, column].ravel()
         states = states[np.isfinite(states)]
         show(1, f"at {value:.6g}")
         return np.column_stack([np.full(len(states), value), states])
 
     def _there(self, value: float) -> Search:
-        """The search at a value of the parameter, in the same box."""
-        parameter = self.search.crowd.parameter.copy()
-        parameter[self.place] = value
-        crowd = replace(self.search.crowd, parameter=parameter)
-        return replace(self.search, crowd=crowd)
+        """The search at a value of the parameter, in the same box (SI)."""
+        crowd, ranges = self.first.crowd, self.first.box.ranges
+        parameter = crowd.parameter.copy()
+        parameter[index_of(crowd.system, self.parameter)] = value
+        box = box_of(crowd.system, parameter, ranges, np.array([self.first.box.low, self.first.box.high]))
+        return replace(self.first, crowd=replace(crowd, parameter=parameter), box=box)
 
-    def _on(self, k: int, motion: Motion) -> tuple[Sheet, int] | None:
+    @staticmethod
+    def _same(search: Search, one: Array, other: Array) -> bool:
+        """Whether two orbits at the value of a search are one."""
+        return search.clock.same(one, other, search.box.width, NEAR)
+
+    def _on(self, search: Search, k: int, motion: Motion) -> tuple[Sheet, int] | None:
         """The branch on which an orbit at the k-th value is, and its stable stretch there, -1 for none."""
-        clock, unit = self.search.clock, self.search.box.width
         for sheet in self.sheets:
             for stretch, states in sheet.sections[k]:
-                if clock.same(motion.sections, states, unit, NEAR):
+                if self._same(search, motion.sections, states):
                     return sheet, stretch
         return None
 
-    def _trace(self, k: int, value: float, motion: Motion) -> None:
+    def _trace(self, value: float, motion: Motion) -> None:
         """Add the branch of an orbit through the range, where it can be traced."""
         assert motion.point is not None
+        what = f"the branch of the motion {motion.name}, at {value:.9g}, was not traced"
+        if len(self.sheets) == BRANCHES:
+            self.remarks.append(f"{what}: there are {BRANCHES} branches already")
+            return
         try:
             branch = trace(
-                self.search.crowd.system,
+                self.first.crowd.system,
                 self.parameter,
                 (float(self.at[0]), float(self.at[-1])),
                 start=value,
                 at=[float(v) for v in self.at],
                 guess=motion.point.orbit,
-                tol=self.search.tol,
+                tol=self.first.tol,
                 control=ArclengthControl(max_points=POINTS),
                 watch=Watch(peaks={}, progress=lambda point: None),
             )
-        except (*FAILURES, ValueError):
+        except FAILURES as failed:
+            self.remarks.append(f"{what}: {failed}")
             return
-        sections, stretches = self._sections(branch, motion.periods)
-        self.sheets.append(Sheet(branch, motion.periods, sections, np.zeros((stretches, len(self.at)))))
+        shares = np.zeros((max(stretches(branch), default=-1) + 1, len(self.at)))
+        sections = self._sections(branch, motion.periods)
+        self.sheets.append(Sheet(branch, motion.periods, sections, shares))
 
-    def _sections(self, branch: Branch, periods: int) -> tuple[list[list[tuple[int, Array]]], int]:
-        """The states once in each period of a branch's orbits at each of the values, and how many stretches.
-
-        Each with the number of the stable stretch along the branch, -1 where it is unstable.
-        """
+    def _sections(self, branch: Branch, periods: int) -> list[list[tuple[int, Array]]]:
+        """At each value the stretch and the states, once in each period, of a branch's orbits there."""
         found: list[list[tuple[int, Array]]] = [[] for _ in self.at]
-        stretch, before = -1, False
-        for point in branch:
-            stretch, before = stretch + (point.stable and not before), point.stable
+        for point, stretch in zip(branch, stretches(branch), strict=True):
             k = int(np.argmin(np.abs(self.at - point.parameter)))
             if abs(point.parameter - self.at[k]) <= 1e-9 * max(1.0, abs(self.at[k])):
-                states = point.orbit.state(FORCED * np.arange(float(periods)))
-                found[k].append((stretch if point.stable else -1, states))
-        return found, stretch + 1
-
-
-FEW = 6
-"""Starts at each value of the diagram."""
+                found[k].append((stretch, point.orbit.state(FORCED * np.arange(float(periods)))))
+        return found

@@ -82,13 +82,13 @@ def basins(
         shape = (grid[1], grid[0])
     found = Sorted(search, motions, len(states))
     labels = found.labels(states)
-    order = sorted(range(len(found.motions)), key=lambda k: -int((labels == k).sum()))
+    every = found.motions
+    stable = [k for k, motion in enumerate(every) if motion.stable]
+    order = sorted(stable, key=lambda k: -int((labels == k).sum()))
     moved = {k: place for place, k in enumerate(order)}
     labels = np.array([moved.get(int(k), int(k)) for k in labels])
     counted = int((labels != Elsewhere.BEHIND).sum())
-    named = tuple(
-        _counted(found.motions[k], int((labels == place).sum()), counted) for place, k in enumerate(order)
-    )
+    named = tuple(_counted(every[k], int((labels == place).sum()), counted) for place, k in enumerate(order))
     unit = search.box.unit
     return Basins(
         named,

@@ -62,10 +62,8 @@ def ahead(system: System, states: Array, parameter: Array) -> NDArray[np.bool_]:
 
 
 def units(system: System, parameter: Array) -> Array:
-    """Return the SI values of one internal unit of each state, (n,): x' is dx/dtau inside, dx/dt outside."""
-    layout = layout_of(system)
-    columns = [layout.column(q.name) for q in layout.states]
-    return np.array([c.scale * (layout.omega(parameter) ** c.order if c.order else 1.0) for c in columns])
+    """Return the SI values of one internal unit of each state, (n,)."""
+    return np.array(list(layout_of(system).units(parameter).values()))
 
 
 def box_of(

@@ -12,6 +12,7 @@ from periodic.orbit.scheme import Array
 from periodic.phasespace.motion import Motions
 from periodic.results.branch import Branch
 from periodic.results.plots.frame import dressed
+from periodic.results.point import Point
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,6 +22,15 @@ LETTERS, MARKERS = "abcdefghijklmnopqrstuvwxyz", "os^vDx"
 
 PLAIN = ("EP", "UZ", "")
 """Labels of points at which nothing happens."""
+
+
+def stretches(branch: Branch) -> list[int]:
+    """Return for each point of a branch the number of the stable stretch that it is on, -1 where unstable."""
+    found, last, before = list[int](), -1, False
+    for point in branch:
+        last, before = last + (point.stable and not before), point.stable
+        found.append(last if point.stable else -1)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,10 +77,8 @@ class Atlas:
         The branches.
     dots : ndarray, shape (D, 2)
         The diagram beneath: values, and the state (SI) of motions that have settled from a few starts.
-    column : int
-        The state's index.
-    unit : float
-        SI value of one internal unit of the state.
+    remarks : tuple of str
+        What could not be done, in words.
     """
 
     parameter: str
@@ -79,8 +87,7 @@ class Atlas:
     motions: tuple[Motions, ...]
     sheets: tuple[Sheet, ...]
     dots: Array
-    column: int
-    unit: float
+    remarks: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return (
@@ -105,7 +112,7 @@ class Atlas:
         for value, found in zip(self.values, self.motions, strict=True):
             others = [motion for motion in found.stable if motion.point is None]
             lines += [f"at {value:.6g}: {motion.name}, {motion.tells}" for motion in others]
-        return "\n".join(lines)
+        return "\n".join([*lines, *self.remarks])
 
     def _attracts(self, name: str, shares: Array) -> str:
         """What part of the box leads to a stable stretch, and where, in words."""
@@ -158,21 +165,27 @@ class Atlas:
     def _named(self, axes: Any, sheet: Sheet, number: int, name: str, colour: str) -> None:
         """Write a stable stretch's name beside the middle of its orbits at the values."""
         own = [
-            (value, states[0, self.column])
-            for value, each in zip(self.values, sheet.sections, strict=True)
-            for stretch, states in each
+            point
+            for point, stretch in zip(sheet.branch, stretches(sheet.branch), strict=True)
             if stretch == number
         ]
-        if own:
-            at, up = own[len(own) // 2]
-            axes.annotate(name, (at, self.unit * up), (4, 4), textcoords="offset points", color=colour)
+        middle = own[len(own) // 2]
+        at = middle.parameter, self._up(middle, 0.0)
+        axes.annotate(name, at, (4, 4), textcoords="offset points", color=colour)
+
+    def _up(self, point: Point, phase: float) -> float:
+        """The state (SI) of an orbit at a phase."""
+        layout = point.orbit.layout
+        assert layout is not None
+        column = layout.column(self.state)
+        unit = layout.units(point.orbit.parameter)[self.state]
+        return float(unit * point.orbit.state(np.array([phase]))[0, column.index])
 
     def _curve(self, axes: Any, sheet: Sheet, number: int, colour: str, name: int) -> None:
         """One line of a branch: the state in one of its periods, stable parts drawn through."""
-        phase = np.array([FORCED * number])
         points = list(sheet.branch)
         across = np.array([point.parameter for point in points])
-        up = self.unit * np.array([point.orbit.state(phase)[0, self.column] for point in points])
+        up = np.array([self._up(point, FORCED * number) for point in points])
         stable = np.array([point.stable for point in points])
         for kind, style in ((stable, "-"), (~stable, ":")):
             near = kind.copy()

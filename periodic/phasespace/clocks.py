@@ -107,7 +107,7 @@ class Forced:
 
     def known(self, point: Point, lag: float, unit: Array, found: str) -> Known:
         """See `Clock`; of a number of periods that is not the least the least is taken."""
-        periods = int(lag)
+        periods = round(self.period(point) / FORCED)
         sections = point.orbit.state(FORCED * np.arange(periods, dtype=float))
         shifts = (k for k in range(1, periods + 1) if periods % k == 0)
         least = next(
@@ -117,7 +117,7 @@ class Forced:
 
     def again(self, motion: Motion, unit: Array) -> Known:
         """See `Clock`."""
-        return Known(motion.sections, motion.periods, motion.point, motion.found, why=motion.why)
+        return Known(motion.sections, motion.periods, motion.point, _how(motion), why=motion.why)
 
     def period(self, point: Point) -> float:
         """See `Clock`."""
@@ -187,9 +187,7 @@ class Free:
         """See `Clock`."""
         steps = np.abs(np.diff(motion.sections, axis=0, append=motion.sections[:1]) / unit)
         spacing = float(steps.max()) if motion.periods else 0.0
-        found = Known(motion.sections, motion.periods, motion.point, motion.found, why=motion.why)
-        found.spacing = spacing
-        return found
+        return Known(motion.sections, motion.periods, motion.point, _how(motion), spacing, why=motion.why)
 
     def period(self, point: Point) -> float:
         """See `Clock`."""
@@ -203,3 +201,8 @@ class Free:
         return all(
             float(np.max(KDTree(a).query(b, p=np.inf)[0])) < near for a, b in ((one, other), (other, one))
         )
+
+
+def _how(motion: Motion) -> str:
+    """How a motion was found, but for the starts that led to it: others are counted anew."""
+    return "" if motion.starts else motion.found

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, cast
 
@@ -34,7 +34,6 @@ class Crowd:
     system: System
     parameter: Array
     tolerance: float = 1e-8
-    _cores: int = field(default_factory=lambda: len(os.sched_getaffinity(0)) if _tells() else 1)
 
     def __post_init__(self) -> None:
         between("tol", self.tolerance, LEAST, MOST)
@@ -94,14 +93,16 @@ class Crowd:
                 targets=targets,
             )
 
-        if len(parts) == 1 or self._cores == 1 or isinstance(self.ensemble, OneByOne):
+        if len(parts) == 1 or cores() == 1 or isinstance(self.ensemble, OneByOne):
             return _joined([one(part) for part in parts])
-        with ThreadPoolExecutor(self._cores) as pool:
+        with ThreadPoolExecutor(cores()) as pool:
             return _joined(list(pool.map(one, parts)))
 
 
-def _tells() -> bool:
-    return hasattr(os, "sched_getaffinity")
+def cores() -> int:
+    """Return how many cores this process may use."""
+    allowed = getattr(os, "sched_getaffinity", None)
+    return len(allowed(0)) if allowed else os.cpu_count() or 1
 
 
 def _joined(parts: Sequence[FollowedLike]) -> FollowedLike:

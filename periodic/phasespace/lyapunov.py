@@ -17,7 +17,6 @@ from periodic.checks import named, number, one_of, whole
 from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
-from periodic.phasespace.box import box_of
 from periodic.phasespace.crowd import Crowd
 from periodic.phasespace.values import parameters
 from periodic.system import System, check_system
@@ -142,8 +141,8 @@ def lyapunov(
     _check(int(settled.outcome[0]))
     found = exponents_of(crowd, settled.ends, settled.modes, count, periods)
     rate = rate_of(crowd)
-    box = box_of(system, parameter, None, np.array([begin, begin]))
-    state = dict(zip(box.names, (box.unit * found.end[:n]).tolist(), strict=True))
+    units = layout_of(system).units(parameter)
+    state = {name: unit * float(x) for (name, unit), x in zip(units.items(), found.end[:n], strict=True)}
     return Exponents(rate * found.mean, rate * found.error, found.growth, state)
 
 
@@ -191,11 +190,10 @@ def beginning(system: System, parameter: Array, start: Mapping[str, float] | Non
     rest = np.asarray(system.rest(parameter)[0], dtype=float).copy()
     if not start:
         return rest
-    names = [state.name for state in system.states]
-    unit = box_of(system, parameter, None, np.array([rest, rest])).unit
+    units = layout_of(system).units(parameter)
     for name, value in named("start", start, "states").items():
-        k = names.index(one_of("a state in start", name, names))
-        rest[k] = number(f"start of {name}", value) / unit[k]
+        k = list(units).index(one_of("a state in start", name, units))
+        rest[k] = number(f"start of {name}", value) / units[name]
     if not np.isfinite(rest).all():
         raise ValueError(f"start is {dict(start)}; its values must be finite")
     return rest

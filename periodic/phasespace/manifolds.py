@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -16,9 +15,6 @@ BESIDE = 1e-4
 
 SHORTER = 4
 """By how much shorter they are followed: those that go round on attractors without a period are known."""
-
-FRESH: dict[str, Any] = {"label": None, "modes": None, "gone": [], "early": None}
-"""What another search of the same orbits begins with."""
 
 DIRECTIONS = 2
 """Along how many of its most unstable directions, to either side."""
@@ -38,7 +34,7 @@ class Manifolds:
         if starts:
             counts = [one.starts for one in self.settling.orbits.each]
             y = self.settling.crowd.begin(np.array(starts))
-            other = replace(self.settling, y=y, longest=self.settling.longest // SHORTER, **FRESH)
+            other = replace(self.settling, y=y, longest=self.settling.longest // SHORTER)
             other.run()
             for one, count in zip(self.settling.orbits.each, counts, strict=False):
                 one.starts = count

@@ -14,6 +14,7 @@ from periodic.correction.condition import Condition
 from periodic.correction.outcome import FAILURES
 from periodic.equilibrium.equilibrium import Equilibrium
 from periodic.orbit.construction import constant
+from periodic.orbit.layout import layout_of
 from periodic.orbit.mesh import uniform
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
@@ -21,6 +22,7 @@ from periodic.orbit.scheme import Array, Scheme
 from periodic.phasespace.crowd import Crowd
 from periodic.results.point import Point
 from periodic.system import Moving, System, check_value
+from periodic.tracing.continuation import RepeatsError
 from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.trace import trace
 from periodic.tracing.watch import Watch
@@ -50,7 +52,17 @@ class Completion:
     frequency: str = ""
 
     def forced(self, y: Array, modes: Sequence[int], periods: int) -> Point | None:
-        """Return the orbit of a number of excitation periods near a motion from y (w,), None without one."""
+        """Return the orbit of a number of excitation periods near a motion from y (w,), None without one.
+
+        One that repeats itself sooner is completed as it does.
+        """
+        for count in (k for k in range(periods, 0, -1) if periods % k == 0):
+            with contextlib.suppress(RepeatsError):
+                return self._forced(y, modes, count)
+        return None
+
+    def _forced(self, y: Array, modes: Sequence[int], periods: int) -> Point | None:
+        """The orbit of a number of periods near a motion. Raises RepeatsError."""
         system, parameter, n = cast(Moving, self.system), self.crowd.parameter, len(self.system.states)
         count = min((SAMPLES - 1) * periods, MOST_SAMPLES - 1)
         phase = np.linspace(0, FORCED * periods, count + 1)
@@ -59,7 +71,7 @@ class Completion:
             guess = sampled(
                 path.phase, path.state, path.algebraic, parameter, system=system, modes=path.modes
             )
-        except (*FAILURES, ValueError):
+        except FAILURES:
             return None
         return self.point(guess)
 
@@ -84,7 +96,7 @@ class Completion:
             return None
         parameter, factor = given.copy(), FORCED / period
         parameter[k] *= factor
-        state = path.state / factor ** np.array(_orders(system))
+        state = path.state / factor**self._orders
         state[-1] = state[0]
         tau = path.phase * factor
         tau[-1] = FORCED
@@ -98,7 +110,7 @@ class Completion:
         """Return the states (K, n) of a free orbit as the system has them at its own omega."""
         k = self._place
         factor = float(orbit.parameter[k] / self.crowd.parameter[k])
-        return np.asarray(orbit.state(phase) * factor ** np.array(_orders(self.system)))
+        return np.asarray(orbit.state(phase) * factor**self._orders)
 
     def point(self, guess: Orbit) -> Point | None:
         """Return the orbit near a guess, at the guess's parameters; None where Newton's method finds none."""
@@ -115,7 +127,7 @@ class Completion:
     ) -> Point | None:
         """The first point of a branch from a guess."""
         name, bounds = self._beside()
-        with contextlib.suppress(*FAILURES, ValueError):
+        with contextlib.suppress(*FAILURES):
             branch = trace(
                 self.system,
                 name,
@@ -136,6 +148,12 @@ class Completion:
     def system(self) -> System:
         """The system."""
         return self.crowd.system
+
+    @property
+    def _orders(self) -> Array:
+        """How many derivatives in time each state is away from a quantity of a unit of its own, (n,)."""
+        layout = layout_of(self.system)
+        return np.array([float(layout.column(q.name).order) for q in layout.states])
 
     @property
     def _place(self) -> int:
@@ -165,10 +183,3 @@ def _rounds(orbit: Orbit) -> int:
         if np.abs(orbit.state(np.mod(phase + FORCED / times, FORCED)) - states).max() < SAME * size:
             return times
     return 1
-
-
-def _orders(system: System) -> list[int]:
-    """How many derivatives in time each state is away from a quantity of a unit of its own."""
-    names = [state.name for state in system.states]
-    stems = [name.rstrip("'") for name in names]
-    return [len(n) - len(stem) if stem in names else 0 for n, stem in zip(names, stems, strict=True)]

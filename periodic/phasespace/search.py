@@ -21,9 +21,9 @@ from periodic.phasespace.known import Known, Orbits
 from periodic.phasespace.manifolds import Manifolds
 from periodic.phasespace.motion import Motion, Motions, Sort, interval
 from periodic.phasespace.orbits import Completion
-from periodic.phasespace.resting import Resting
 from periodic.phasespace.round import Round
 from periodic.phasespace.settle import Settling
+from periodic.phasespace.unexcited import Unexcited
 from periodic.phasespace.unstable import Unstable
 from periodic.phasespace.values import parameters
 from periodic.system import System, check_system, frequency_of
@@ -36,6 +36,9 @@ FINEST, COARSEST = 1e-12, 1e-8
 
 WIDER = 3.0
 """How many times wider than the motion from rest the box is by default."""
+
+LEAST = 1e-3
+"""Least half width of that motion's ranges, in its largest state, or in scales where that is less."""
 
 FROM_REST = 200
 """Periods after which that motion's ranges are taken."""
@@ -152,7 +155,7 @@ class Search:
     def _unstable(self, settling: Settling) -> str:
         """Add unstable orbits, or equilibria and cycles; what was tried, in words."""
         if self.frequency:
-            return Resting(settling, self.box, self.places, self.seed).run()
+            return Unexcited(settling, self.box, self.places, self.seed).run()
         return Unstable(settling, self.box, self.periods, self.places, self.seed).run()
 
     def motion(self, one: Known, of: int) -> Motion:
@@ -181,8 +184,6 @@ def _around(crowd: Crowd) -> Array:
     if not np.isfinite(states).all():
         return np.array([rest - WIDER, rest + WIDER])
     low, high = states.min(axis=0), states.max(axis=0)
-    middle, half = (
-        (low + high) / 2,
-        np.maximum((high - low) / 2, 1e-3 * max(1.0, float(np.abs(states).max()))),
-    )
+    middle, least = (low + high) / 2, LEAST * max(1.0, float(np.abs(states).max()))
+    half = np.maximum((high - low) / 2, least)
     return np.array([middle - WIDER * half, middle + WIDER * half])

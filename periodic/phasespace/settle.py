@@ -55,12 +55,12 @@ class Settling:
     y: Array
     orbits: Orbits
     longest: int
-    label: Any = None
-    modes: Any = None
-    gone: list[int] = field(default_factory=list)
-    early: Array | None = None
-    sections: Array = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    held: list[frozenset[int]] = field(default_factory=list)
+    label: Any = field(init=False)
+    modes: Any = field(default=None, init=False)
+    gone: list[int] = field(default_factory=list, init=False)
+    early: Array | None = field(default=None, init=False)
+    sections: Array = field(default_factory=lambda: np.zeros((0, 0, 0)), init=False)
+    held: list[frozenset[int]] = field(default_factory=list, init=False)
 
     def __post_init__(self) -> None:
         self.label = np.full(len(self.y), -1)
@@ -158,14 +158,14 @@ class Settling:
         Returns which of the orbits it is if there is no doubt: where friction holds something; else -1.
         """
         motion, held = int(self.left[k]), self.held[k]
-        point = self.clock.complete(self.y[motion], list(self.modes[motion]), lag)
+        point, added = self.clock.complete(self.y[motion], list(self.modes[motion]), lag), False
         if point is not None:
             added = self.add(point, lag, "", held)
         elif off < SETTLED:
             states = self.sections[k][-max(round(lag), 1) :]
             why = "seen in simulations; no orbit was found beside it"
             added = self.orbits.add(Known(states, max(int(lag), 0), None, "", why=why, held=held), ALIKE)
-        return len(self.orbits) - 1 if held and (point is not None or off < SETTLED) and added else -1
+        return len(self.orbits) - 1 if held and added else -1
 
     def add(self, point: Point, lag: float, found: str, held: frozenset[int] = frozenset()) -> bool:
         """Add an orbit unless it is known; whether it was added."""

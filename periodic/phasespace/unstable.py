@@ -70,7 +70,9 @@ class Unstable:
         assert path.sections is not None
         sections = path.sections[0, :-1, : settling.n]
         for lag in (k for k in range(1, periods + 1) if periods % k == 0):
-            if any(same(sections[:lag], one.sections, settling.unit, NEAR) for one in settling.orbits.each):
+            if any(
+                same(sections[:lag], one.sections, settling.unit, NEAR * PART) for one in settling.orbits.each
+            ):
                 return
         if settling.holds(path.modes[0], path.changes[0]):  # one of a family that simulations lead to
             return

@@ -18,27 +18,7 @@ class TorusError(ArithmeticError):
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """A quasi-periodic motion, by its section once in a period.
-
-    Parameters
-    ----------
-    states : ndarray, shape (M, n)
-        Scaled states at tau = 0 and M equispaced angles theta.
-    rotation : float
-        rho in rad: by how much theta grows in one period.
-    parameter : ndarray, shape (p,)
-        The system's parameters.
-    period : float
-        Of the map, in tau: that of the excitation, or one that the torus determines.
-    layout : Layout
-        Names, units and scales.
-    residual : float
-        Largest residual of the invariance, scaled.
-    tail : float
-        Largest of the two highest harmonics of the curve, relative to its largest: an estimate of the error.
-    free : bool
-        Whether the system is not excited, so that the period is determined with the torus.
-    """
+    """A quasi-periodic motion, by its section once in a period. See `Torus` for its members."""
 
     states: Array
     rotation: float
@@ -105,9 +85,7 @@ class Section:
     @property
     def units(self) -> Mapping[str, float]:
         """SI values of one internal unit of each state, by name."""
-        columns = [self.layout.column(q.name) for q in self.layout.states]
-        omega = self.layout.omega(self.parameter) if any(c.order for c in columns) else 1.0
-        return {c.name: c.scale * omega**c.order for c in columns}
+        return self.layout.units(self.parameter)
 
     def states_at(self, angles: Array) -> Array:
         """Return all scaled states of the section.

@@ -47,6 +47,9 @@ SAMPLES, MANY = 4096, 65536
 NEAR = 0.05
 """Part of its size by which a first torus may miss the motion: Newton's method does the rest."""
 
+GOOD = 1e-2
+"""... and by which the first of several that fit, with the fewest harmonics, is taken."""
+
 
 def settled_torus(
     system: System,
@@ -115,10 +118,6 @@ def settled_torus(
             f"another number of angles or a longer settle may lead to one"
         )
     return cast(Torus, refined)
-
-
-GOOD = 1e-2
-"""... and by which the first of several that fit, with the fewest harmonics, is taken."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from periodic.system import System
-from periodic.tori.branch import TorusBranch
 from periodic.tori.section import Section
+from periodic.tori.torusbranch import TorusBranch
 from periodic.tori.trace import traced
 
 

@@ -14,11 +14,11 @@ from periodic.orbit.layout import layout_of
 from periodic.orbit.scheme import Array
 from periodic.phasespace.values import parameters
 from periodic.system import System, check_system, index_of
-from periodic.tori.branch import TorusBranch, TorusPoint
 from periodic.tori.family import MOST_ANGLES, Family, family_of, resampled
 from periodic.tori.invariance import Unknowns
 from periodic.tori.section import Section, TorusError
 from periodic.tori.stability import moduli, stable
+from periodic.tori.torusbranch import TorusBranch, TorusPoint
 
 FIRST, LONGEST, SHORTEST = 0.02, 0.1, 1e-6
 """Steps along the family: the first, the longest and the shortest, in ranges of the parameter."""
@@ -123,7 +123,7 @@ def traced(
             for point in march.points(first):
                 made.append(point)
                 show(1, f"at {point.parameter:.6g}")
-            halves.append((made, march.stop))
+            halves.append((made, march.told))
     one = _point(family, first, begin, "EP" if len(halves) == 1 else "")
     if len(halves) == 1:
         points, stop = halves[0]
@@ -134,7 +134,10 @@ def traced(
 
 @dataclass
 class OneWay:
-    """One way along a family, within bounds of the parameter (scaled); stop: why it ended."""
+    """One way along a family, within bounds of the parameter (scaled).
+
+    stop: why it ended. lost: what lies between two of its tori and was not found.
+    """
 
     family: Family
     parameter: str
@@ -144,6 +147,12 @@ class OneWay:
     asked: Sequence[float]
     most: int
     stop: str = field(default="", init=False)
+    lost: list[str] = field(default_factory=list, init=False)
+
+    @property
+    def told(self) -> str:
+        """Why it ended, and what on the way was not found."""
+        return "; ".join([self.stop, *self.lost])
 
     def points(self, first: Section) -> Iterator[TorusPoint]:
         """Yield the tori after the first; `stop` is known at the end."""
@@ -168,10 +177,11 @@ class OneWay:
                 return
             refined = self.family.refined(after)
             if refined is None or refined.tail > self.family.rough:
-                yield self._one(after, "EP")
+                last = refined or after
+                yield self._one(last, "EP")
                 self.stop = (
-                    f"the torus loses its smoothness: its highest harmonics are {after.tail:.0e} of the "
-                    f"largest with {MOST_ANGLES} angles"
+                    f"the torus loses its smoothness: its highest harmonics are {last.tail:.0e} of the "
+                    f"largest with {len(last.states)} angles, and {MOST_ANGLES} are not enough"
                 )
                 return
             if len(refined.states) != len(after.states):
@@ -202,22 +212,24 @@ class OneWay:
         """Yield what lies between two tori: a fold, values asked for, the end of the range."""
         free = self.family.equations.free
         a, b = float(now.parameter[free]), float(after.parameter[free])
-        turned = np.count_nonzero(before) > 1 and before[-1] * ahead[-1] < 0
-        if turned and (fold := self._fold(now, before, after)) is not None:
-            yield self._one(fold, "LP")
+        if np.count_nonzero(before) > 1 and before[-1] * ahead[-1] < 0:
+            yield from self._found(self._fold(now, before, after), "LP", b)
         for value in sorted((v / self.scale for v in self.asked), key=lambda v: abs(v - a)):
-            if (
-                min(a, b) < value <= max(a, b)
-                and (there := self.family.between(now, after, value)) is not None
-            ):
-                yield self._one(there, "UZ")
+            if min(a, b) < value <= max(a, b):
+                yield from self._found(self.family.between(now, after, value), "UZ", value)
         low, high = self.bounds
         for end, past in ((low, b <= low), (high, b >= high)):
             if past:
-                if (there := self.family.between(now, after, end)) is not None:
-                    yield self._one(there, "EP")
+                yield from self._found(self.family.between(now, after, end), "EP", end)
                 self.stop = f"end of the range at {end * self.scale:.9g}"
                 return
+
+    def _found(self, torus: Section | None, label: str, value: float) -> Iterator[TorusPoint]:
+        """Yield a torus with its label; where there is none, write that down."""
+        if torus is None:
+            self.lost.append(f"no torus {label} was found near {value * self.scale:.9g}")
+        else:
+            yield self._one(torus, label)
 
     def _fold(self, now: Section, tangent: Array, after: Section) -> Section | None:
         """The torus at which the parameter turns back, by secants on its slope."""

@@ -34,6 +34,10 @@ from periodic.tracing.steps.watchedswings import WatchedSwings
 from periodic.tracing.watch import Watch
 
 
+class RepeatsError(ValueError):
+    """The orbit of a guess of several excitation periods repeats itself sooner."""
+
+
 @dataclass
 class Continuation:
     """A continuation under way: iterate it for its points, `stop` then says why it ended.
@@ -142,7 +146,7 @@ class Continuation:
             self.stop = Stop(Reason.INACCURATE, base.refinement.shortfall)
             return
         if repeats(solver, base):
-            raise ValueError(
+            raise RepeatsError(
                 f"guess takes {base.orbit.periods} excitation periods, but its orbit repeats itself sooner; "
                 f"it must be sampled over as many as it takes"
             )

@@ -35,8 +35,9 @@ def test_one_branch_with_two_stable_stretches() -> None:
     basins = per.basins(
         sym.scene("gear-pair"), {"Omega": 0.66}, box={"x": (-3, 3), "x'": (-2, 2)}, starts=2000
     )
-    (low, high), share = basins.motions[0].interval, sheet.shares[:, 1].max()
-    assert low - 0.25 < share < high + 0.25
+    for motion in basins.motions:
+        near = min(sheet.shares[:, 1], key=lambda share: abs(share - motion.share))
+        assert near == pytest.approx(motion.share, abs=4 * (motion.share * (1 - motion.share) / 40) ** 0.5)
 
 
 def test_diagram_is_on_the_branch() -> None:
@@ -44,7 +45,7 @@ def test_diagram_is_on_the_branch() -> None:
     found = gears()
     at = found.dots[np.isclose(found.dots[:, 0], 0.66)]
     own = [float(states[0, 0]) for number, states in found.sheets[0].sections[1] if number >= 0]
-    away = np.abs(at[:, 1:] - found.unit * np.array(own)).min(axis=1)
+    away = np.abs(at[:, 1:] - np.array(own)).min(axis=1)
     assert len(at) > 100 and away.max() < 1e-4
 
 
@@ -73,3 +74,17 @@ def test_refusals() -> None:
         per.atlas(system, "Omega", (1, 2), state="z")
     with pytest.raises(ValueError, match="count is 1; it must be a whole number of at least 2"):
         per.atlas(system, "Omega", (1, 2), count=1)
+    free = sym.Equations(lambda s, p: {"x": s.v, "v": -s.x - p.c * s.v}, {"x": 1.0, "v": 0.0}, {"c": 0.1})
+    with pytest.raises(ValueError, match="the system is not excited"):
+        per.atlas(sym.compile(free), "c", (0.1, 0.2), box={"x": (-1, 1), "v": (-1, 1)})
+
+
+def test_speeds_of_the_box_are_those_asked_for() -> None:
+    """Assert that a range of velocities is in SI at each value, and that the diagram of them is too."""
+    box = {"x": (-2, 2), "x'": (-1, 1)}
+    given = {"count": 2, "diagram": 2, "starts": 8, "places": 0, "periods": 1}
+    found = per.atlas(oscillator(), "Omega", (0.5, 2.0), box=box, state="x'", **given)
+    assert [motions.box["x'"] for motions in found.motions] == [pytest.approx((-1, 1))] * 2
+    last = found.dots[found.dots[:, 0] == 2.0]
+    end = next(p for p in found.sheets[0].branch if p.parameter == 2.0)
+    assert last[:, 1] == pytest.approx(float(end.orbit["x'"](0.0)), abs=1e-4)

@@ -11,25 +11,13 @@ from support.oscillators import X, oscillator
 
 import periodic as per
 import symbolic as sym
+from periodic.phasespace.aperiodic import Attractor
 from periodic.phasespace.birkhoff import digits, rotation_number
 from periodic.phasespace.recurrence import period, return_time
+from reports.studies.motions import known
+from reports.studies.motions.judge import Oscillator
 
 pytestmark = pytest.mark.usefixtures("users_kernels")
-
-
-def kinked() -> sym.CompiledSystem:
-    """Lorenz's equations with a kink."""
-    return sym.compile(
-        sym.Equations(
-            lambda s, p: {
-                "x": s.y - s.x,
-                "y": -s.x * s.z + 0.1 * sym.functions.fabs(s.z),
-                "z": s.x * s.y - p.a,
-            },
-            states={"x": 1.0, "y": 1.0, "z": 1.0},
-            parameters={"a": 5.0},
-        )
-    )
 
 
 def test_three_branches_of_an_oscillator() -> None:
@@ -75,13 +63,13 @@ def test_torus_by_its_rotation_number() -> None:
 
 def test_chaos_by_its_exponent() -> None:
     """Assert Ueda's attractor, and two and two of its unstable motions alike, as the equations are."""
-    system = sym.compile(
-        sym.Mass(X, 1.0) + sym.Damper(X, 0.05) + sym.CubicSpring(X, 1.0) + sym.HarmonicForce(X, 7.5, 1.0)
-    )
+    system = known.oscillator(k=0.0, c=0.05, force=7.5)
     found = per.motions(system, box={"x": (-4, 4), "x'": (-6, 6)}, starts=32, periods=2)
     chaos = found[0]
     assert chaos.sort == per.phasespace.Sort.CHAOTIC and chaos.starts == 32
-    assert chaos.exponent == pytest.approx(0.1, abs=0.02)
+    other = per.lyapunov(system, start={"x": 2.0}, periods=4000)
+    assert chaos.exponent == pytest.approx(other.values[0], abs=8 * other.errors[0])
+    assert other.errors[0] < 0.005
     assert all(not motion.stable for motion in found.motions[1:])
     once = [abs(m.point.multipliers[0]) for m in found.unstable if m.periods == 1]
     assert sorted(once) == pytest.approx([1.489, 1.489, 13.0], rel=1e-2)
@@ -89,7 +77,7 @@ def test_chaos_by_its_exponent() -> None:
 
 def test_cycle_beside_chaos() -> None:
     """Assert the cycle of period 4.6542037389 with multiplier -0.87709132 beside a chaotic attractor."""
-    found = per.motions(kinked(), box=dict.fromkeys("xyz", (-4, 4)), starts=48, settle=400, places=16)
+    found = per.motions(known.kinked(), box=dict.fromkeys("xyz", (-4, 4)), starts=48, settle=400, places=16)
     cycle = next(motion for motion in found.stable if motion.sort == per.phasespace.Sort.PERIODIC)
     assert 2 * math.pi / cycle.orbit.parameters["omega"] == pytest.approx(4.6542037389, rel=1e-7)
     assert cycle.point.nontrivial[0].real == pytest.approx(-0.87709132, abs=1e-5)
@@ -203,3 +191,18 @@ def test_averages_tell_tori_from_chaos() -> None:
     for k in range(3999):
         chaos[k + 1] = 4 * chaos[k] * (1 - chaos[k])
     assert digits(chaos, np.ones(1)) < 3.5
+
+
+def test_chaos_in_bands_is_no_torus() -> None:
+    """Assert chaos of three bands visited in turn, whose averages converge like a torus'."""
+    oscillator = Oscillator(38)
+    box = {"x": (-3, 3), "x'": (-3, 3)}
+    found = per.motions(oscillator.system(), box=box, starts=48, periods=4, places=0)
+    sorts = {motion.sort: motion.periods for motion in found.stable}
+    assert sorts == {per.phasespace.Sort.PERIODIC: 4, per.phasespace.Sort.CHAOTIC: 0}
+
+
+def test_attractor_that_was_lost_has_no_motion() -> None:
+    """Assert that others are not said to be on one of which nothing is known."""
+    lost = Attractor(np.zeros((0, 2)), per.phasespace.Sort.OPEN, math.nan, math.nan, "lost")
+    assert not lost.has(np.ones((500, 2)), np.ones(2))

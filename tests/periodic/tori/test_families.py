@@ -11,51 +11,10 @@ from support.kept import kept
 
 import periodic as per
 import symbolic as sym
+from periodic.tori.family import Family
+from reports.studies.motions.tori import coupled, forced, two_forces
 
 pytestmark = pytest.mark.usefixtures("users_kernels")
-
-
-def two_forces() -> sym.CompiledSystem:
-    """x'' + 0.1 x' + x + 1.5 x^3 = 0.25 sin(eta t) + 0.25 sin(sqrt(2) eta t); c and s turn by the second."""
-
-    def rates(x, p, wave):  # type: ignore[no-untyped-def]
-        left, omega = 1 - x.c**2 - x.s**2, math.sqrt(2) * p.eta
-        return {
-            "x": x.v,
-            "v": 0.25 * wave.sin + 0.25 * x.s - 0.1 * x.v - x.x - 1.5 * x.x**3,
-            "c": left * x.c - omega * x.s,
-            "s": left * x.s + omega * x.c,
-        }
-
-    states = {"x": 0.0, "v": 0.0, "c": 1.0, "s": 0.0}
-    return sym.compile(sym.Equations(rates, states, {"eta": 1.9}, frequency="eta"))
-
-
-def coupled() -> sym.CompiledSystem:
-    """Two van der Pol oscillators of different frequencies, coupled: not excited."""
-
-    def rates(x, p):  # type: ignore[no-untyped-def]
-        return {
-            "x": x.u,
-            "u": -p.e * (x.x**2 - 1) * x.u - x.x + p.a * (x.y - x.x),
-            "y": x.v,
-            "v": -p.e * (x.y**2 - 1) * x.v - (1 + p.b) * x.y + p.a * (x.x - x.y),
-        }
-
-    states = {"x": 1.0, "u": 0.0, "y": 0.5, "v": 0.0}
-    return sym.compile(sym.Equations(rates, states, {"e": 0.5, "a": 0.1, "b": 1.1}))
-
-
-def forced() -> sym.CompiledSystem:
-    """x'' + 0.3 (x^2 - 1) x' + x = 0.4 cos(eta t)."""
-    return sym.compile(
-        sym.Equations(
-            lambda x, p, wave: {"x": x.v, "v": 0.4 * wave.cos - 0.3 * (x.x**2 - 1) * x.v - x.x},
-            {"x": 0.0, "v": 0.0},
-            {"eta": 1.4},
-            frequency="eta",
-        )
-    )
 
 
 @kept
@@ -177,3 +136,11 @@ def test_refusals() -> None:
         per.trace(two_forces(), "eta", (1.0, 2.0), guess=torus, start=3.0)
     with pytest.raises(ValueError, match=r"bounds is \(2, 1\); it must be two finite numbers"):
         per.trace(two_forces(), "eta", (2, 1), guess=torus)
+
+
+def test_what_is_not_found_on_the_way_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that a value asked for at which Newton's method fails is named where the family says its end."""
+    monkeypatch.setattr(Family, "between", lambda *given: None)
+    family = per.trace(forced(), "eta", (1.4, 1.44), guess=per.settled_torus(forced()), at=[1.41])
+    assert "no torus UZ was found near 1.41" in family.stops[1]
+    assert family.stops[1].startswith("end of the range at 1.44") and not family.labelled("UZ")

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from support.oscillators import SYSTEMS, X, oscillator
 
 import symbolic as sym
-from periodic.system.ensembles import DIVERGED, LOST, PILED, SPENT
+from periodic.system.ensembles import DIVERGED, PILED
 from symbolic.arrays import Array
 from symbolic.integration.ensembles.ensemble import Ensemble
 
@@ -92,8 +92,9 @@ def test_outcomes() -> None:
         states={"x": 1.0, "v": 0.0},
         resets=lambda x, p: {"floor": (x.x, {"v": -0.5 * x.v})},
     )
-    piled = ensemble(sym.compile(bouncing)).run(np.array([[1.0, 0.0]]), 1, 10.0).outcome[0]
-    assert piled in (PILED, SPENT, LOST)
+    found = ensemble(sym.compile(bouncing)).run(np.array([[1.0, 0.0]]), 2, 10.0, keep=True)
+    assert found.outcome.tolist() == [PILED]
+    assert found.sections is not None and np.isnan(found.sections[0, 1:]).all()
 
 
 def test_known_ends() -> None:
@@ -103,6 +104,11 @@ def test_known_ends() -> None:
     targets = np.zeros((1, 2)), [7], np.ones(2), 1e-3
     found = together.run(np.array([[1.0, 0.0], [-0.5, 0.3]]), 100, PERIOD, targets=targets, keep=True)
     assert found.label.tolist() == [7, 7] and np.abs(found.ends).max() < 1e-3
+    assert found.sections is not None
+    for path, end in zip(found.sections, found.ends, strict=True):
+        reached = np.isfinite(path).all(axis=1)
+        last = int(reached.sum()) - 1
+        assert reached[: last + 1].all() and (path[last] == end).all() and last < 100
     assert together.run(np.array([[1.0, 0.0]]), 3, PERIOD, targets=targets).label.tolist() == [-1]
 
 
@@ -113,3 +119,15 @@ def test_held_surfaces_do_not_change() -> None:
         int(ensemble(each).run(np.zeros((1, 2)), 10, PERIOD).changes[0, 0]) for each in (slipping, holding)
     ]
     assert counts == [4, 0]
+
+
+def test_exceptions_of_callbacks_are_raised(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert it of Ctrl-C while a motion begins, through C that cannot carry it."""
+
+    def interrupted(*given: object) -> None:
+        raise KeyboardInterrupt
+
+    together = ensemble(SYSTEMS["friction"]())
+    monkeypatch.setattr(Ensemble, "_changed", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        together.run(np.zeros((3, 2)), 1, PERIOD)

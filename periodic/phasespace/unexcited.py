@@ -28,7 +28,7 @@ CYCLES, TURNS = 12, 6
 
 
 @dataclass(frozen=True, eq=False)
-class Resting:
+class Unexcited:
     """The search for equilibria by Newton's method, and for cycles from where motions come back closest."""
 
     settling: Settling
