@@ -60,7 +60,6 @@ class OneByOne:
         count: int,
         stretch: float,
         *,
-        phase: float = 0.0,
         modes: Any = None,
         keep: bool = False,
         tangents: Array | None = None,
@@ -74,12 +73,10 @@ class OneByOne:
         if modes is not None:
             own[:] = modes
         sections = np.full((many, count + 1, width), np.nan) if keep else None
-        growth, k = np.zeros((many, count, w.shape[1])), w.shape[1]
-        found = Each(
-            start.copy(), own, np.zeros(many, int), np.full(many, -1), sections, growth[:, :, :k], w, 0 * own
-        )
+        growth = np.zeros((many, count, w.shape[1]))
+        found = Each(start.copy(), own, np.zeros(many, int), np.full(many, -1), sections, growth, w, 0 * own)
         for s in range(many):
-            self._one(found, s, count, stretch, phase, modes is not None, raw, targets)
+            self._one(found, s, count, stretch, modes is not None, raw, targets)
         return found
 
     def _one(
@@ -88,7 +85,6 @@ class OneByOne:
         s: int,
         count: int,
         stretch: float,
-        phase: float,
         known: bool,
         raw: bool,
         targets: tuple[Array, Sequence[int], Array, float] | None,
@@ -98,7 +94,7 @@ class OneByOne:
         if found.sections is not None:
             found.sections[s, 0] = found.ends[s]
         for c in range(count):
-            at = phase + c * stretch, phase + (c + 1) * stretch
+            at = c * stretch, (c + 1) * stretch
             y, modes = found.ends[s], list(found.modes[s]) if known or c else None
             try:
                 later, after, changes = self._after(y, modes, at)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -112,12 +112,11 @@ class Search:
             tuple(tried),
         )
 
-    def settled(self, known: Sequence[Known] = ()) -> Settling:
-        """Return motions from all starts, followed to their ends; known: orbits where they may end."""
+    def settled(self) -> Settling:
+        """Return motions from all starts, followed to their ends."""
         system, parameter = self.crowd.system, self.crowd.parameter
         y = self.crowd.begin(self.box.draw(self.starts, self.seed, system, parameter))
         settling = self.settling(y)
-        settling.orbits.each.extend(known)
         settling.run()
         return settling
 

@@ -58,14 +58,13 @@ class EnsembleLike(Protocol):
         count: int,
         stretch: float,
         *,
-        phase: float = 0.0,
         modes: Any = None,
         keep: bool = False,
         tangents: Array | None = None,
         raw: bool = False,
         targets: tuple[Array, Sequence[int], Array, float] | None = None,
     ) -> FollowedLike:
-        """Follow motions from y (S, w) at `phase` over `count` stretches (rad).
+        """Follow motions from y (S, w) at phase 0 over `count` stretches (rad).
 
         modes: those to begin with, (S, surfaces); by default as the states have them. keep: whether there are
         sections. tangents: (S, k, w); orthonormal anew after each stretch, or, where `raw`, as they are.

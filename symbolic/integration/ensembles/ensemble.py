@@ -128,14 +128,13 @@ class Ensemble:
         count: int,
         stretch: float,
         *,
-        phase: float = 0.0,
         modes: NDArray[np.intc] | None = None,
         keep: bool = False,
         tangents: Array | None = None,
         raw: bool = False,
         targets: Targets | None = None,
     ) -> Followed:
-        """Follow motions from y (S, w) at `phase` over `count` stretches (rad).
+        """Follow motions from y (S, w) at phase 0 over `count` stretches (rad).
 
         modes: those to begin with, (S, surfaces); by default as the states have them. keep: whether sections
         are. tangents: (S, k, w), made orthonormal after each stretch unless they are wanted `raw`. targets:
@@ -162,7 +161,6 @@ class Ensemble:
             failed = self._follow(
                 many,
                 count,
-                phase,
                 stretch,
                 _at(given),
                 self.tolerance,
@@ -246,7 +244,7 @@ class Ensemble:
     def _follow(self) -> Callable[..., int]:
         whole, real, array = ctypes.c_ssize_t, ctypes.c_double, ctypes.c_void_p
         call = self.library.follow
-        call.argtypes = [whole, whole, real, real, array, real, real, real, *[whole] * 7, OTHER]
+        call.argtypes = [whole, whole, real, array, real, real, real, *[whole] * 7, OTHER]
         call.argtypes += [*[array] * 5, whole, array, array, array, real, array, array, array]
         call.restype = ctypes.c_int
         found: Callable[..., int] = call

@@ -569,14 +569,14 @@ static ptrdiff_t arrived(const double *y, ptrdiff_t targets, const double *targe
     return -1;
 }
 
-/* Follow `motions` motions over `count` stretches of `width`, each from `phase`.
+/* Follow `motions` motions over `count` stretches of `width`, each from phase 0.
 
    y (motions, N): in and out. modes (motions, SURFACES): in, where `given_modes`, and out. sections: (motions,
    count + 1, N) where not NULL, NaN what is not reached. growth: (motions, count, tangents), tangents (motions,
    tangents, N) where there are any. changes (motions, SURFACES): of modes in the last stretch. A motion stops
    early where it arrives at one of `targets` places (targets, STATES), in units (STATES,); `label` says whose
    place that is, -1 of motions that arrive nowhere. outcome: of each. Returns 1 where there is no memory. */
-int follow(ptrdiff_t motions, ptrdiff_t count, double phase, double width, const double *parameter,
+int follow(ptrdiff_t motions, ptrdiff_t count, double width, const double *parameter,
            double tolerance, double largest, double longest, ptrdiff_t most_steps, ptrdiff_t most_events,
            ptrdiff_t tangents, ptrdiff_t raw, ptrdiff_t begun_here, ptrdiff_t simple, ptrdiff_t given_modes,
            Other other, double *y, int *modes, double *sections, double *growth, double *tangent,
@@ -607,7 +607,7 @@ int follow(ptrdiff_t motions, ptrdiff_t count, double phase, double width, const
     reset_once(parameter, o->kept_reset);
     reset_slope_once(parameter, o->kept_reset_slope);
     for (ptrdiff_t s = 0; s < motions; s++) {
-        Motion motion = {.tau = phase, .h = 0.01}, *m = &motion;
+        Motion motion = {.tau = 0, .h = 0.01}, *m = &motion;
         double *each = room;
         m->y = each;
         m->next = each += size;
@@ -619,7 +619,7 @@ int follow(ptrdiff_t motions, ptrdiff_t count, double phase, double width, const
         begun(o, m);
         int done = FOLLOWED, before = -1;
         if (given_modes) memcpy(m->mode, modes + s * SURFACES, SURFACES * sizeof *modes);
-        else if (!begun_here && !other(phase, m->y, m->mode, -1, NULL, NULL, NULL)) done = LOST;
+        else if (!begun_here && !other(0, m->y, m->mode, -1, NULL, NULL, NULL)) done = LOST;
         m->fresh = 1;
         label[s] = -1;
         if (sections) memcpy(sections + s * (count + 1) * N, m->y, N * sizeof *y);
@@ -627,7 +627,7 @@ int follow(ptrdiff_t motions, ptrdiff_t count, double phase, double width, const
         while (reached < count && done == FOLLOWED) {
             const ptrdiff_t c = reached;
             memset(m->changes, 0, sizeof m->changes);
-            done = followed(o, m, phase + (c + 1) * width);
+            done = followed(o, m, (c + 1) * width);
             if (done != FOLLOWED) break;
             reached++;
             if (m->fresh) entered(o, m);
