@@ -10,7 +10,9 @@ import numpy as np
 from periodic.checks import one_of, two, whole
 from periodic.correction.outcome import FAILURES
 from periodic.correction.tolerance import Accuracy
+from periodic.display.htmltables import with_unit
 from periodic.display.meter import meter
+from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
 from periodic.phasespace.box import box_of
@@ -93,7 +95,7 @@ def atlas(
     ValueError
         For what is not allowed.
     """
-    index_of(system, parameter)
+    place = index_of(system, parameter)
     low, high = two("bounds", bounds)
     if parameter in (values or {}):
         raise ValueError(f"values has {parameter!r}, over which the atlas is; it must be left out")
@@ -115,6 +117,8 @@ def atlas(
     return Atlas(
         parameter,
         names[column],
+        with_unit(parameter, system.parameters[place].unit),
+        with_unit(f"{names[column]} at tau = 0", layout_of(system).column(names[column]).unit),
         at,
         tuple(chart.motions),
         tuple(chart.sheets),

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from periodic.checks import number, one_of, whole
 from periodic.correction.tolerance import Accuracy
 from periodic.display.meter import meter
+from periodic.orbit.layout import layout_of
 from periodic.orbit.scheme import Array
 from periodic.phasespace.aperiodic import Attractors
 from periodic.phasespace.box import Box, ahead
@@ -98,6 +99,7 @@ def basins(
         () if plane is None else tuple(plane),
         search.box.ranges,
         unit,
+        {name: layout_of(system).column(name).unit for name in search.box.names},
     )
 
 

@@ -68,7 +68,9 @@ class Atlas:
     Parameters
     ----------
     parameter, state : str
-        What is across, and the state at tau = 0 that is up.
+        The parameter, and the state that the picture shows at tau = 0.
+    across, up : str
+        What the axes of the picture are called, with units.
     values : ndarray, shape (K,)
         The values (SI) at which motions were looked for.
     motions : tuple of Motions
@@ -83,6 +85,8 @@ class Atlas:
 
     parameter: str
     state: str
+    across: str
+    up: str
     values: Array
     motions: tuple[Motions, ...]
     sheets: tuple[Sheet, ...]
@@ -156,10 +160,10 @@ class Atlas:
         if any(other):
             lower.plot(self.values, 100 * np.array(other), "x-", color="0.4", label="tori and chaos")
         lower.set_ylim(-5, 105)
-        lower.set(xlabel=self.parameter, ylabel="share of the box, %")
+        lower.set(xlabel=self.across, ylabel="share of the box, %")
         lower.grid(alpha=0.25)
         lower.legend(fontsize="small", frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
-        dressed(upper, "", f"{self.state} at tau = 0")
+        dressed(upper, "", self.up)
         return figure
 
     def _named(self, axes: Any, sheet: Sheet, number: int, name: str, colour: str) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.checks import whole
+from periodic.display.htmltables import with_unit
 from periodic.orbit.scheme import Array
 from periodic.phasespace.motion import Motion
 from periodic.phasespace.picture import Elsewhere, drawn
@@ -38,6 +39,8 @@ class Basins:
         The ranges of states (SI), by name.
     unit : ndarray, shape (n,)
         SI values of one internal unit of each state.
+    units : dict
+        SI units of the states, by name; "" where they have none.
     """
 
     motions: tuple[Motion, ...]
@@ -47,6 +50,7 @@ class Basins:
     plane: tuple[str, ...]
     box: dict[str, tuple[float, float]]
     unit: Array = field(repr=False)
+    units: dict[str, str] = field(repr=False)
 
     def __repr__(self) -> str:
         each = ", ".join(f"{100 * motion.share:.2f} % {motion.name}" for motion in self.motions)
@@ -113,4 +117,5 @@ class Basins:
             raise ValueError("the starts are on no plane; basins(plane=(...)) must give one for a picture")
         columns = [self.names.index(name) for name in self.plane]
         places = [(motion.sections * self.unit)[:, columns] for motion in self.motions]
-        return drawn(self.labels, self.motions, places, [(name, self.box[name]) for name in self.plane], axes)
+        plane = [(with_unit(name, self.units[name]), self.box[name]) for name in self.plane]
+        return drawn(self.labels, self.motions, places, plane, axes)

@@ -54,7 +54,7 @@ def drawn(
 ) -> Axes:
     """Draw basins on their plane.
 
-    labels: (rows, columns). places: of each motion (K, 2). plane: the names of two states, with their ranges.
+    labels: (rows, columns). places: of each motion (K, 2). plane: the axes' names, with their ranges.
     """
     from matplotlib.colors import to_rgb
 
@@ -66,7 +66,7 @@ def drawn(
         image[labels == k] = to_rgb(colour)
         small = len(states) > FEW
         sign, inside, size = (".", "black", 1.5) if small else ("o", colour, 7)
-        name = f"{motion.name}: {100 * motion.share:.1f} %"
+        name = f"{k + 1}: {motion.name}, {100 * motion.share:.1f} %"
         points = states[:POINTS].T
         axes.plot(*points, sign, color=inside, markersize=size, markeredgecolor="black", label=name)
     for k, (colour, name) in PLAIN.items():

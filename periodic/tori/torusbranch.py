@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from periodic.display.htmltables import paragraph, table
+from periodic.display.htmltables import paragraph, table, with_unit
 from periodic.orbit.scheme import Array
 from periodic.results.plots.frame import dressed, fresh
 from periodic.tori.section import Section
@@ -91,8 +91,14 @@ class TorusBranch(Sequence[TorusPoint]):
         return table(self._headings, rows) + "".join(paragraph(stop) for stop in self.stops)
 
     @property
+    def _across(self) -> str:
+        """The parameter's name with its unit."""
+        known = {q.name: q.unit for q in self.points[0].torus.layout.parameters}
+        return with_unit(self.parameter, known[self.parameter])
+
+    @property
     def _headings(self) -> tuple[str, ...]:
-        return (self.parameter, "rotation number", "size", "largest modulus", "stable", "angles", "tail", "")
+        return (self._across, "rotation number", "size", "largest modulus", "stable", "angles", "tail", "")
 
     @property
     def values(self) -> Array:
@@ -143,7 +149,7 @@ class TorusBranch(Sequence[TorusPoint]):
         if folds:
             at = [fold.parameter for fold in folds], [fold.torus.size for fold in folds]
             axes.plot(*at, "o", color="C3", label="LP")
-        return dressed(axes, self.parameter, "size of the section (scaled)")
+        return dressed(axes, self._across, "size of the section (scaled)")
 
 
 def _row(point: TorusPoint) -> tuple[str, ...]:

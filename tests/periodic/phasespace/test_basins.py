@@ -101,9 +101,9 @@ def test_what_is_known_is_used() -> None:
 def test_picture_is_drawn(tmp_path: Path) -> None:
     """Assert the axes, and a legend of shares; refused where there is no plane."""
     axes = picture().plot()
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("x", "x'")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("x (m)", "x' (m/s)")
     texts = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert len(texts) == 4 and all(text.startswith("stable, periodic: ") for text in texts)
+    assert len(texts) == 4 and all(text[1:].startswith(": stable, periodic, ") for text in texts)
     axes.figure.savefig(tmp_path / "basins.png")
     with pytest.raises(ValueError, match="the starts are on no plane"):
         per.basins(oscillator(), box=BOX, starts=4, periods=1).plot()

@@ -119,7 +119,7 @@ def test_tables_and_pictures(tmp_path: Path) -> None:
     assert repr(family).startswith(f"TorusBranch({len(family)} tori over n; the torus shrinks")
     assert repr(family[3]).startswith("TorusPoint(")
     axes = family.plot()
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("n", "size of the section (scaled)")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("n (rad/s)", "size of the section (scaled)")
     axes.figure.savefig(tmp_path / "family.png")
 
 
