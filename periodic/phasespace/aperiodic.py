@@ -84,6 +84,10 @@ class Attractors:
             Attractor(motion.sections, motion.sort, motion.exponent, motion.rotation, motion.why)
         )
 
+    def on(self, sections: Array, those: Array) -> bool:
+        """Return whether a motion is on the attractor that is known by those sections."""
+        return any(one.has(sections, self.unit) for one in self.found if one.sections is those)
+
     def _described(self, y: Array, modes: Any) -> Attractor:
         """A motion on an attractor, followed further: chaotic where neighbours part, whatever averages say.
 

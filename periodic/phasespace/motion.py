@@ -59,6 +59,9 @@ class Motion:
         The rotation number of a torus in (0, 1/2]: see `Torus.rotation_number`.
     why : str
         What is not known of it, and why.
+    images : tuple of int
+        Which of the motions found are its images under symmetries of the equations; itself where it is
+        symmetric.
     """
 
     sort: Sort
@@ -73,6 +76,7 @@ class Motion:
     exponent: float = float("nan")
     rotation: float = float("nan")
     why: str = ""
+    images: tuple[int, ...] = ()
 
     def __repr__(self) -> str:
         return f"Motion({', '.join(text for text in (self.name, self.tells) if text)}, {self.found})"
@@ -81,6 +85,11 @@ class Motion:
     def orbit(self) -> Orbit | None:
         """The orbit, where it is periodic and completed; a guess for `trace`."""
         return None if self.point is None else self.point.orbit
+
+    @property
+    def comes_back(self) -> bool:
+        """Whether it is periodic, or rests."""
+        return self.sort in (Sort.PERIODIC, Sort.EQUILIBRIUM)
 
     @property
     def name(self) -> str:
@@ -178,7 +187,7 @@ class Motions(Sequence[Motion]):
         return float((1 - share) ** (self.starts - self.undecided))
 
     def __str__(self) -> str:
-        rows = [HEADINGS, *(_row(motion) for motion in self.motions)]
+        rows = [HEADINGS, *self._rows]
         widths = [max(len(row[k]) for row in rows) for k in range(len(HEADINGS))]
         lines = [
             "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
@@ -190,9 +199,12 @@ class Motions(Sequence[Motion]):
         return f"Motions({len(self.stable)} stable, {len(self.unstable)} unstable; {self._summary})"
 
     def _repr_html_(self) -> str:
-        rows = [_row(motion) for motion in self.motions]
         told = "".join(paragraph(text) for text in (*self.tried, self._summary))
-        return table(HEADINGS, rows) + told
+        return table(HEADINGS, self._rows) + told
+
+    @property
+    def _rows(self) -> list[tuple[str, ...]]:
+        return [_row(k, motion) for k, motion in enumerate(self.motions)]
 
     @property
     def _summary(self) -> str:
@@ -205,14 +217,22 @@ class Motions(Sequence[Motion]):
         return ", ".join(told)
 
 
-HEADINGS = ("motion", "share of the box", "95 %", "tells", "found")
+HEADINGS = ("", "motion", "share of the box", "95 %", "tells", "found")
 """Of the table of motions."""
 
 
-def _row(motion: Motion) -> tuple[str, ...]:
+def _row(k: int, motion: Motion) -> tuple[str, ...]:
     low, high = motion.interval
     shares = (f"{100 * motion.share:.1f} %", f"{100 * low:.1f} to {100 * high:.1f} %")
-    return (motion.name, *(shares if motion.starts else ("", "")), motion.tells, motion.found)
+    tells = ", ".join(text for text in (motion.tells, _imaged(k, motion.images)) if text)
+    return (str(k + 1), motion.name, *(shares if motion.starts else ("", "")), tells, motion.found)
+
+
+def _imaged(k: int, images: tuple[int, ...]) -> str:
+    """Which motions are images of the k-th, in words."""
+    others = ", ".join(str(i + 1) for i in images if i != k)
+    own = ["symmetric"] if k in images else []
+    return ", ".join([*own, *([f"image of {others}"] if others else [])])
 
 
 def interval(count: int, of: int, level: float = 0.95) -> tuple[float, float]:

@@ -36,6 +36,9 @@ MOST_SAMPLES = 4 * (SAMPLES - 1) + 1
 MOST_ROUNDS, SAME = 8, 1e-4
 """How often a cycle may go round in what was taken for its period, and how near its states then are."""
 
+INTERVALS = 20
+"""Intervals of the mesh of an orbit that is looked for about a state at rest."""
+
 BESIDE = 1e-3
 """How wide the range of a parameter is in which one orbit is found, as a part of its value."""
 
@@ -116,6 +119,10 @@ class Completion:
         """Return the orbit near a guess, at the guess's parameters; None where Newton's method finds none."""
         determined: Mapping[str, Condition] = {self.frequency: PhaseCondition()} if self.frequency else {}
         return self._first(guess, determined, None)
+
+    def about(self, state: Array, algebraic: Array) -> Point | None:
+        """Return the orbit of one period of the excitation near states (n,) and unknowns (m,) that rest."""
+        return self.point(constant(uniform(Scheme(), INTERVALS), state, algebraic, self.crowd.parameter))
 
     def equilibrium(self, state: Array, algebraic: Array) -> Point | None:
         """Return the equilibrium near states (n,) and unknowns (m,); None where there is none."""

@@ -17,12 +17,14 @@ from periodic.phasespace.aperiodic import Attractors
 from periodic.phasespace.box import Box, box_of
 from periodic.phasespace.clocks import Clock, Forced, Free
 from periodic.phasespace.crowd import Crowd
+from periodic.phasespace.images import Images
 from periodic.phasespace.known import Known, Orbits
 from periodic.phasespace.manifolds import Manifolds
 from periodic.phasespace.motion import Motion, Motions, Sort, interval
 from periodic.phasespace.orbits import Completion
 from periodic.phasespace.round import Round
 from periodic.phasespace.settle import Settling
+from periodic.phasespace.symmetries import symmetries_of
 from periodic.phasespace.unexcited import Unexcited
 from periodic.phasespace.unstable import Unstable
 from periodic.phasespace.values import parameters
@@ -98,12 +100,16 @@ class Search:
             say(f"{len(settling.orbits)} orbits with unstable ones")
         for name, bounds in named("along", along, "ranges of parameters").items():
             tried.append(Round(settling, name, bounds, self.tol, self._determined).run())
+        images = Images(settling, symmetries_of(self.crowd, self.box, self.seed, not self.frequency))
+        if images.symmetries:
+            tried.append(images.run())
         made = [self.motion(one, self.starts) for one in settling.orbits.each]
         made += [others.motion(k, int((labels == k).sum()), self.starts) for k in range(len(others.found))]
         undecided = self.starts - len(settling.gone) - sum(motion.starts for motion in made)
         names = [p.name for p in self.crowd.system.parameters]
+        made.sort(key=lambda motion: (not motion.stable, -motion.starts, motion.periods))
         return Motions(
-            tuple(sorted(made, key=lambda motion: (not motion.stable, -motion.starts, motion.periods))),
+            images.marked(tuple(made), others),
             dict(zip(names, self.crowd.parameter.tolist(), strict=True)),
             self.box.ranges,
             self.starts,

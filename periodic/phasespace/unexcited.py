@@ -7,18 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from periodic.orbit.scheme import Array
+from periodic.phasespace.atrest import at_rest
 from periodic.phasespace.box import Box
 from periodic.phasespace.clocks import PER_TURN
 from periodic.phasespace.settle import Settling
-
-ITERATIONS = 60
-"""Newton's steps towards an equilibrium."""
-
-LONGEST = 0.25
-"""Longest step, in widths of the box."""
-
-RESTS = 1e-9
-"""Step at an equilibrium, in widths of the box."""
 
 RETURN = 0.1
 """Distance between a motion and itself later that may be a cycle nearby, in its size."""
@@ -56,27 +48,9 @@ class Unexcited:
 
     def _still(self) -> list[tuple[Array, Array]]:
         """States and unknowns at which nothing moves."""
-        system, parameter = self.settling.crowd.system, self.settling.crowd.parameter
-        n, unit = self.settling.n, self.settling.unit
-        x = self.box.draw(self.places, self.seed, system, parameter)
-        z = np.tile(system.rest(parameter)[1], (len(x), 1))
-        found: list[tuple[Array, Array]] = []
-        for _ in range(ITERATIONS):
-            line = system.linearise(np.zeros_like(x), x, z, np.zeros(len(x)), parameter)
-            slope = np.concatenate([line.d_state, line.d_algebraic], axis=2)
-            good = np.isfinite(slope).all(axis=(1, 2)) & np.isfinite(line.residual).all(axis=1)
-            x, z, slope, residual = x[good], z[good], slope[good], line.residual[good]
-            if not len(x):
-                break
-            step = -np.einsum("sij,sj->si", np.linalg.pinv(slope, rcond=1e-13), residual)
-            size = np.abs(step[:, :n] / unit).max(axis=1)
-            there = size < RESTS
-            for state, unknowns in zip(x[there], z[there], strict=True):
-                if all(np.abs((state - other) / unit).max() > np.sqrt(RESTS) for other, _ in found):
-                    found.append((state, unknowns))
-            part = np.minimum(1.0, LONGEST / np.maximum(size, LONGEST))[:, None]
-            x, z = (x + part * step[:, :n])[~there], system.move(z, part * step[:, n:])[~there]
-        return found
+        crowd, unit = self.settling.crowd, self.settling.unit
+        x = self.box.draw(self.places, self.seed, crowd.system, crowd.parameter)
+        return at_rest(crowd.system, crowd.parameter, x, unit, np.zeros(1))
 
     def _returns(self) -> list[tuple[Array, float]]:
         """Where motions that never settle came back closest, and after how many looks."""

@@ -8,11 +8,15 @@ import numpy as np
 
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
+from periodic.phasespace.atrest import at_rest
 from periodic.phasespace.box import Box
 from periodic.phasespace.clocks import NEAR, PART
 from periodic.phasespace.fixedpoints import FixedPoints
 from periodic.phasespace.recurrence import same
 from periodic.phasespace.settle import Settling
+
+PHASES = 16
+"""Phases of which the mean of the equations is taken."""
 
 ROUNDS = 2
 """How often the same places are started from: first as they are, then with what was found deflated."""
@@ -37,6 +41,7 @@ class Unstable:
     def run(self) -> str:
         """Add orbits to those known; return what was tried, in words."""
         before = len(self.settling.orbits)
+        rests = self._rests()
         for periods in range(1, self.periods + 1):
             for round_ in range(ROUNDS):
                 known = self._roots(periods) if round_ else np.zeros((0, self.settling.n))
@@ -44,9 +49,25 @@ class Unstable:
                     break
         found = len(self.settling.orbits) - before
         return (
-            f"Newton's method on the maps over 1 to {self.periods} periods from {self.places} places "
-            f"each, then with what was found deflated: {found} more orbits"
+            f"collocation from {rests} states at which the equations' mean over a period rests, and Newton's "
+            f"method on the maps over 1 to {self.periods} periods from {self.places} places each, then with "
+            f"what was found deflated: {found} more orbits"
         )
+
+    def _rests(self) -> int:
+        """Look for orbits about states at which the equations' mean over a period rests; how many there are.
+
+        Those about one that is very unstable are out of reach of motions.
+        """
+        crowd, settling = self.settling.crowd, self.settling
+        x = self.box.draw(self.places, self.seed, crowd.system, crowd.parameter)
+        phases = np.linspace(0, FORCED, PHASES, endpoint=False)
+        found = at_rest(crowd.system, crowd.parameter, x, settling.unit, phases)
+        for state, unknowns in found:
+            point = settling.clock.completion.about(state, unknowns)
+            if point is not None:
+                settling.add(point, 1, "about a state at rest")
+        return len(found)
 
     def _one(self, periods: int, known: Array) -> int:
         """Search the map over some periods once; how many roots there were."""

@@ -59,7 +59,7 @@ def test_words_and_picture(tmp_path: Path) -> None:
     assert any(line.startswith("   LP at 0.8358376") for line in lines)
     figure = found.plot()
     upper, lower = figure.axes
-    assert (upper.get_ylabel(), lower.get_xlabel()) == ("x at tau = 0 (m)", "Omega (rad/s)")
+    assert (upper.get_ylabel(), lower.get_xlabel()) == ("x at tau = 0", "Omega (rad/s)")
     figure.savefig(tmp_path / "atlas.png")
 
 
