@@ -65,9 +65,14 @@ class Unstable:
         found = at_rest(crowd.system, crowd.parameter, x, settling.unit, phases)
         for state, unknowns in found:
             point = settling.clock.completion.about(state, unknowns)
-            if point is not None:
+            if point is not None and not self._held(point.orbit.state(np.zeros(1))):
                 settling.add(point, 1, "about a state at rest")
         return len(found)
+
+    def _held(self, state: Array) -> bool:
+        """Whether friction holds something all along a motion of one period: it is of a family then."""
+        path = self.settling.crowd.run(self.settling.crowd.begin(state), 1, FORCED)
+        return bool(self.settling.holds(path.modes[0], path.changes[0]))
 
     def _one(self, periods: int, known: Array) -> int:
         """Search the map over some periods once; how many roots there were."""

@@ -134,4 +134,4 @@ def start(family: Family, base: Torus, way: Array) -> tuple[Torus, Array]:
     found = solved(family.equations, small, small, held, level, family.tol)
     if found is None:
         raise TorusError("no torus is found beside the bifurcation; it may be degenerate")
-    return cast(Torus, found), family.direction(base, found)
+    return cast(Torus, found[0]), found[1]

@@ -31,22 +31,25 @@ class Family:
     tol: float
     rough: float = np.inf
 
-    def corrected(self, now: Section, tangent: Array, length: float) -> tuple[Section, Array] | None:
-        """Return the torus a step along the family and the direction there; None where Newton fails."""
+    def corrected(
+        self, now: Section, tangent: Array, length: float, guess: Section | None = None
+    ) -> tuple[Section, Array] | None:
+        """Return the torus a step along the family and the tangent there; None where Newton fails."""
         unknowns = Unknowns(self.equations, now)
         values, held = unknowns.of(now), unknowns.weights * tangent
-        guess = unknowns.torus(values + length * tangent)
-        found = solved(self.equations, guess, now, held, float(held @ (values + length * tangent)), self.tol)
-        return None if found is None else (found, self.direction(now, found))
-
-    def direction(self, before: Section, after: Section) -> Array:
-        """Return the unit tangent from a torus to another with as many angles."""
-        unknowns = Unknowns(self.equations, after)
-        ahead = unknowns.of(after) - unknowns.of(before)
-        return np.asarray(ahead / np.sqrt(unknowns.weights @ ahead**2))
+        ahead = values + length * tangent
+        begin = unknowns.torus(ahead) if guess is None else guess
+        return solved(self.equations, begin, now, held, float(held @ ahead), self.tol)
 
     def held(self, guess: Section, value: float, before: Section | None = None) -> Section | None:
         """Return the torus near a guess at a value of the parameter; None where Newton fails."""
+        found = self.directed(guess, value, before)
+        return None if found is None else found[0]
+
+    def directed(
+        self, guess: Section, value: float, before: Section | None = None
+    ) -> tuple[Section, Array] | None:
+        """Return the torus at a value as `held` does, and the tangent along which the parameter grows."""
         unknowns = Unknowns(self.equations, guess)
         last = np.zeros(len(unknowns.weights))
         last[-1] = 1.0
@@ -62,14 +65,16 @@ class Family:
         share = (value / self.equations.scale - low[-1]) / (high[-1] - low[-1])
         return self.held(unknowns.torus(low + share * (high - low)), value, after)
 
-    def refined(self, torus: Section) -> Section | None:
-        """Return a torus with as many angles as it needs, at its parameter; None where that fails."""
-        now: Section | None = torus
-        while now is not None and now.tail > self.rough and len(now.states) < MOST_ANGLES:
-            now = self.held(
-                resampled(now, 2 * len(now.states) - 1), float(now.parameter[self.equations.free])
-            )
-        return now
+    def refined(self, torus: Section) -> tuple[Section, Array] | None:
+        """Return a torus with as many angles as it needs, and the tangent: see `directed`.
+
+        None where that fails.
+        """
+        value = float(torus.parameter[self.equations.free])
+        found = self.directed(torus, value)
+        while found is not None and found[0].tail > self.rough and len(found[0].states) < MOST_ANGLES:
+            found = self.directed(resampled(found[0], 2 * len(found[0].states) - 1), value)
+        return found
 
 
 def resampled(torus: Section, count: int) -> Section:
@@ -78,7 +83,14 @@ def resampled(torus: Section, count: int) -> Section:
     return replace(torus, states=torus.states_at(angles))
 
 
-def family_of(system: System, free: int, tol: float, scale: float = 1.0, rough: float = math.inf) -> Family:
-    """Return the tori of a system over a parameter, by its index."""
+def family_of(
+    system: System,
+    free: int,
+    tol: float,
+    scale: float = 1.0,
+    rough: float = math.inf,
+    released: int | None = None,
+) -> Family:
+    """Return the tori of a system over a parameter, by its index; one released: see `Invariance`."""
     tolerance = max(positive("tol", tol) / FINER, FINEST)
-    return Family(Invariance(system, free, tolerance, scale), tol, rough)
+    return Family(Invariance(system, free, tolerance, scale, released), tol, rough)

@@ -23,7 +23,7 @@ from periodic.phasespace.crowd import Crowd
 from periodic.system import System
 from periodic.system.ensembles import FOLLOWED
 from periodic.system.precision import MOST_ITERATIONS
-from periodic.tori.section import Section, kernel, tail_of
+from periodic.tori.section import Section, interpolation, tail_of
 
 DIFFERENCE = 1e-5
 """Step of differences in the period and in a parameter, as a part of their sizes."""
@@ -39,13 +39,15 @@ FAR = 1e3
 class Invariance:
     """The equations in the M n states, rho, T of a free torus, and one parameter, whose index is `free`.
 
-    tolerance: of the integration. scale: of the parameter, in which its steps are measured.
+    tolerance: of the integration. scale: of the parameter, in which its steps are measured. released: the
+    index of another parameter that is unknown in place of rho, which stays.
     """
 
     system: System
     free: int
     tolerance: float
     scale: float = 1.0
+    released: int | None = None
 
     def linearise(self, torus: Section) -> tuple[Array, Array]:
         """Return the residual (M n,) and its derivatives (M n, M n + k). Raises ArithmeticError.
@@ -54,14 +56,16 @@ class Invariance:
         """
         count, n = torus.states.shape
         images, slopes = self.mapped(torus)
-        own = angles(count)
-        back, slope = kernel(count, np.subtract.outer(own - torus.rotation, own))
+        back, slope = interpolation(count, angles(count) - torus.rotation)
         residual = (back @ images - torus.states).ravel()
         moved = np.einsum("jk,kab->jakb", back, slopes).reshape(count * n, count * n)
-        columns = [(-slope @ images).ravel()]
+        if self.released is None:
+            columns = [(-slope @ images).ravel()]
+        else:
+            columns = [(back @ self._by_parameter(torus, self.released, 1.0)).ravel()]
         if torus.free:
             columns.append((back @ self._by_period(torus)).ravel())
-        columns.append((back @ self._by_parameter(torus)).ravel())
+        columns.append((back @ self._by_parameter(torus, self.free, self.scale)).ravel())
         return residual, np.column_stack([moved - np.eye(count * n), *columns])
 
     def mapped(self, torus: Section) -> tuple[Array, Array]:
@@ -84,16 +88,16 @@ class Invariance:
         ends = [self._ends(torus.states, torus.parameter, torus.period + s * step) for s in (1, -1)]
         return (ends[0] - ends[1]) / (2 * step)
 
-    def _by_parameter(self, torus: Section) -> Array:
-        """Derivative of the images in the parameter over its scale, (M, n)."""
-        value = torus.parameter[self.free]
-        step = DIFFERENCE * max(abs(value), 1e-3 * self.scale)
+    def _by_parameter(self, torus: Section, which: int, scale: float) -> Array:
+        """Derivative of the images in a parameter over its scale, (M, n)."""
+        value = torus.parameter[which]
+        step = DIFFERENCE * max(abs(value), 1e-3 * scale)
         ends = []
         for side in (1, -1):
             parameter = torus.parameter.copy()
-            parameter[self.free] = value + side * step
+            parameter[which] = value + side * step
             ends.append(self._ends(torus.states, parameter, torus.period))
-        return (ends[0] - ends[1]) / (2 * step) * self.scale
+        return (ends[0] - ends[1]) / (2 * step) * scale
 
     def _ends(self, states: Array, parameter: Array, stretch: float) -> Array:
         """Where states are after a stretch."""
@@ -116,14 +120,19 @@ def angles(count: int) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Unknowns:
-    """All unknowns of a torus as one array: states, rho, T where it is free, the parameter over its scale."""
+    """All unknowns of a torus as one array: states, rho, T where it is free, the parameter over its scale.
+
+    In place of rho a parameter that is released.
+    """
 
     equations: Invariance
     like: Section
 
     def of(self, torus: Section) -> Array:
         """Return the array of a torus."""
-        last = [torus.rotation, *([torus.period] if torus.free else [])]
+        released = self.equations.released
+        first = torus.rotation if released is None else torus.parameter[released]
+        last = [first, *([torus.period] if torus.free else [])]
         value = torus.parameter[self.equations.free] / self.equations.scale
         return np.concatenate([torus.states.ravel(), [*last, value]])
 
@@ -131,11 +140,13 @@ class Unknowns:
         """Return the torus of an array."""
         parameter, count = self.like.parameter.copy(), self.like.states.size
         parameter[self.equations.free] = values[-1] * self.equations.scale
-        states = values[:count].reshape(self.like.states.shape)
+        states, released = values[:count].reshape(self.like.states.shape), self.equations.released
+        if released is not None:
+            parameter[released] = values[count]
         return replace(
             self.like,
             states=states,
-            rotation=float(values[count]),
+            rotation=float(values[count]) if released is None else self.like.rotation,
             period=float(values[count + 1]) if self.like.free else self.like.period,
             parameter=parameter,
             residual=np.inf,
@@ -152,8 +163,7 @@ class Unknowns:
 def phase_rows(equations: Invariance, torus: Section) -> Array:
     """Return what the phase conditions hold, over all unknowns, (1 or 2, M n + k)."""
     count = len(torus.states)
-    own = angles(count)
-    rows = [kernel(count, np.subtract.outer(own, own))[1] @ torus.states]
+    rows = [interpolation(count, angles(count))[1] @ torus.states]
     if torus.free:
         rows.append(equations.rates(torus))
     zeros = np.zeros(3 if torus.free else 2)
@@ -162,10 +172,10 @@ def phase_rows(equations: Invariance, torus: Section) -> Array:
 
 def solved(
     equations: Invariance, guess: Section, before: Section, held: Array, level: float, tol: float
-) -> Section | None:
-    """Return the torus near a guess with held . unknowns = level; None where Newton's method fails.
+) -> tuple[Section, Array] | None:
+    """Return the torus near a guess with held . unknowns = level, and the tangent of its family.
 
-    before: the torus whose phases are kept.
+    None where Newton's method fails. before: the torus whose phases are kept. held . tangent is positive.
     """
     unknowns = Unknowns(equations, guess)
     values, origin = unknowns.of(guess), unknowns.of(before)
@@ -178,10 +188,19 @@ def solved(
             if not size < FAR:
                 return None
             gaps = [*(along @ (values - origin)), held @ values - level]
-            if size < tol and np.abs(gaps).max() < tol:
-                return replace(torus, residual=size, tail=tail_of(torus.states))
             matrix = np.vstack([jacobian, along, held])
+            if size < tol and np.abs(gaps).max() < tol:
+                found = replace(torus, residual=size, tail=tail_of(torus.states))
+                return found, _tangent(matrix, unknowns.weights)
             values = values - np.linalg.solve(matrix, np.append(residual, gaps))
     except (ArithmeticError, np.linalg.LinAlgError):
         return None
     return None
+
+
+def _tangent(matrix: Array, weights: Array) -> Array:
+    """The unit vector that all rows but the last leave as it is."""
+    last = np.zeros(len(matrix))
+    last[-1] = 1.0
+    found = np.linalg.solve(matrix, last)
+    return np.asarray(found / np.sqrt(weights @ found**2))

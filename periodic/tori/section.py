@@ -100,19 +100,25 @@ class Section:
         ndarray, shape (K, n)
             The states.
         """
-        own = 2 * np.pi * np.arange(len(self.states)) / len(self.states)
-        return kernel(len(self.states), np.subtract.outer(angles, own))[0] @ self.states
+        return interpolation(len(self.states), angles)[0] @ self.states
 
 
 Function = Callable[[Mapping[str, Array]], Array]
 """Of states in SI by their names, each an array, as ``lambda s: s["x"] ** 2``."""
 
 
-def kernel(count: int, angle: Array) -> tuple[Array, Array]:
-    """Return Dirichlet's kernel of `count` angles and its slope."""
+def interpolation(count: int, at: Array) -> tuple[Array, Array]:
+    """Return the matrices (K, M) that make a series and its slope at angles (K,) of M equispaced values.
+
+    Their elements are Dirichlet's kernel and its slope at the differences of the angles.
+    """
     order = np.arange(1, count // 2 + 1)
-    turn = np.multiply.outer(angle, order)
-    return (1 + 2 * np.cos(turn).sum(axis=-1)) / count, -2 * (np.sin(turn) @ order) / count
+    there = np.multiply.outer(at, order)
+    own = np.multiply.outer(order, 2 * np.pi * np.arange(count) / count)
+    cos, sin = np.cos(there), np.sin(there)
+    value = 1 + 2 * (cos @ np.cos(own) + sin @ np.sin(own))
+    slope = 2 * ((cos * order) @ np.sin(own) - (sin * order) @ np.cos(own))
+    return value / count, slope / count
 
 
 def tail_of(states: Array) -> float:

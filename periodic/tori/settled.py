@@ -117,7 +117,7 @@ def settled_torus(
             f"no torus is found near the motion, whose rotation number is about {guess.rotation_number:.6g}; "
             f"another number of angles or a longer settle may lead to one"
         )
-    return cast(Torus, refined)
+    return cast(Torus, refined[0])
 
 
 @dataclass(frozen=True, eq=False)

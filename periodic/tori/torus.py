@@ -44,6 +44,10 @@ class Torus(Section):
         start: float | None = None,
         at: float | Sequence[float] = (),
         values: Mapping[str, float] | None = None,
+        released: str = "",
     ) -> TorusBranch:
-        """Return the family of tori through this one: see `periodic.trace`, which takes it as a guess."""
-        return traced(system, self, parameter, bounds, start=start, at=at, values=values)
+        """Return the family of tori through this one: see `periodic.trace`, which takes it as a guess.
+
+        With `released`, another parameter, those of the same rotation number: it is what it must be for them.
+        """
+        return traced(system, self, parameter, bounds, start=start, at=at, values=values, released=released)

@@ -11,10 +11,14 @@ import numpy as np
 from periodic.display.htmltables import paragraph, table, with_unit
 from periodic.orbit.scheme import Array
 from periodic.results.plots.frame import dressed, fresh
+from periodic.results.point import Point
 from periodic.tori.section import Section
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+SPECIAL = ("LP", "BP", "PD", "NS")
+"""Labels of special points."""
 
 SHOWN = 40
 """Most points that a table shows."""
@@ -30,17 +34,18 @@ class TorusPoint:
         The torus.
     parameter : float
         The parameter (SI).
-    moduli : ndarray, shape (n,)
-        Moduli of its multipliers, the largest first; see `per.tori.moduli`.
+    multipliers : ndarray of complex, shape (n,)
+        Its multipliers, the largest first; see `per.tori.torus_multipliers`.
     stable : bool
         Whether motions beside it come to it.
     label : str
-        "LP" at a fold of the family, "UZ" at a value asked for, "EP" at an end, else "".
+        "LP" at a fold of the family, "BP", "PD" and "NS" where a multiplier at 1, one at -1 or a pair comes
+        through the unit circle, "UZ" at a value asked for, "EP" at an end, else "".
     """
 
     torus: Section
     parameter: float
-    moduli: Array
+    multipliers: Array
     stable: bool
     label: str = ""
 
@@ -61,11 +66,17 @@ class TorusBranch(Sequence[TorusPoint]):
         The tori.
     stops : tuple of str
         Why the family ends at its first point, and at its last.
+    released : str
+        The parameter that changes so that the rotation number stays, "" for none.
+    orbits : tuple of Point
+        The orbits of some periods of the excitation on which the motion locks beyond its ends.
     """
 
     parameter: str
     points: tuple[TorusPoint, ...]
     stops: tuple[str, str]
+    released: str = ""
+    orbits: tuple[Point, ...] = ()
 
     def __len__(self) -> int:
         return len(self.points)
@@ -80,25 +91,40 @@ class TorusBranch(Sequence[TorusPoint]):
         return f"TorusBranch({len(self)} tori over {self.parameter}; {self.stops[0]} | {self.stops[1]})"
 
     def __str__(self) -> str:
-        rows = [self._headings, *map(_row, self.points)]
+        rows = [self._headings, *map(self._row, self.points)]
         widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
         lines = ["  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True)) for row in rows]
         return "\n".join([*lines, f"begins: {self.stops[0]}", f"ends: {self.stops[1]}"])
 
     def _repr_html_(self) -> str:
         step = max(1, len(self) // SHOWN)
-        rows = [_row(point) for point in self.points[::step]]
+        rows = [self._row(point) for point in self.points[::step]]
         return table(self._headings, rows) + "".join(paragraph(stop) for stop in self.stops)
 
-    @property
-    def _across(self) -> str:
-        """The parameter's name with its unit."""
+    def _named(self, parameter: str) -> str:
+        """A parameter's name with its unit."""
         known = {q.name: q.unit for q in self.points[0].torus.layout.parameters}
-        return with_unit(self.parameter, known[self.parameter])
+        return with_unit(parameter, known[parameter])
 
     @property
     def _headings(self) -> tuple[str, ...]:
-        return (self._across, "rotation number", "size", "largest modulus", "stable", "angles", "tail", "")
+        names = [self._named(name) for name in (self.parameter, self.released) if name]
+        return (*names, "rotation number", "size", "largest modulus", "stable", "angles", "tail", "")
+
+    def _row(self, point: TorusPoint) -> tuple[str, ...]:
+        other = [f"{point.torus.parameters[self.released]:.9g}"] if self.released else []
+        sizes = np.abs(point.multipliers)
+        return (
+            f"{point.parameter:.9g}",
+            *other,
+            f"{point.torus.rotation_number:.9f}",
+            f"{point.torus.size:.6g}",
+            f"{sizes.max():.6g}",
+            "yes" if point.stable else "no",
+            str(len(point.torus.states)),
+            f"{point.torus.tail:.0e}",
+            point.label,
+        )
 
     @property
     def values(self) -> Array:
@@ -116,7 +142,7 @@ class TorusBranch(Sequence[TorusPoint]):
         Parameters
         ----------
         label : str
-            "LP", "UZ" or "EP".
+            "LP", "BP", "PD", "NS", "UZ" or "EP".
 
         Returns
         -------
@@ -145,22 +171,9 @@ class TorusBranch(Sequence[TorusPoint]):
             near = kind | np.roll(kind, 1) | np.roll(kind, -1)
             if kind.any():
                 axes.plot(self.values, np.where(near, size, np.nan), style, color="C0", label=name)
-        folds = self.labelled("LP")
-        if folds:
-            at = [fold.parameter for fold in folds], [fold.torus.size for fold in folds]
-            axes.plot(*at, "o", color="C3", label="LP")
-        return dressed(axes, self._across, "size of the section (scaled)")
-
-
-def _row(point: TorusPoint) -> tuple[str, ...]:
-    others = np.sort(np.abs(point.moduli))[::-1]
-    return (
-        f"{point.parameter:.9g}",
-        f"{point.torus.rotation_number:.9f}",
-        f"{point.torus.size:.6g}",
-        f"{others[0]:.6g}",
-        "yes" if point.stable else "no",
-        str(len(point.torus.states)),
-        f"{point.torus.tail:.0e}",
-        point.label,
-    )
+        for k, label in enumerate(SPECIAL):
+            marked = self.labelled(label)
+            if marked:
+                at = [point.parameter for point in marked], [point.torus.size for point in marked]
+                axes.plot(*at, "os^D"[k], color="C3", label=label)
+        return dressed(axes, self._named(self.parameter), "size of the section (scaled)")

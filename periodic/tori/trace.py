@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 
 import numpy as np
 
@@ -13,11 +12,14 @@ from periodic.display.meter import meter
 from periodic.orbit.layout import layout_of
 from periodic.orbit.scheme import Array
 from periodic.phasespace.values import parameters
+from periodic.results.point import Point
 from periodic.system import System, check_system, index_of
-from periodic.tori.family import MOST_ANGLES, Family, family_of, resampled
+from periodic.tori.ends import born, locked, lost, orbits_beyond, passed, resonance, rough
+from periodic.tori.family import Family, family_of
 from periodic.tori.invariance import Unknowns
 from periodic.tori.section import Section, TorusError
-from periodic.tori.stability import moduli, stable
+from periodic.tori.stability import stable, torus_multipliers
+from periodic.tori.step import Located, Step, value_of
 from periodic.tori.torusbranch import TorusBranch, TorusPoint
 
 FIRST, LONGEST, SHORTEST = 0.02, 0.1, 1e-6
@@ -35,17 +37,14 @@ BORN = 0.02
 MOST_STEPS = 1000
 """Most steps in each direction."""
 
-LARGEST = 20
-"""Largest denominator of a rotation number at which a torus is said to lock."""
+BACK = 24
+"""Tori back from which it is tried to pass over a narrow resonance."""
 
-LOCKS = 0.05
-"""Distance of a rotation number from p/q, over 1/q^2, at which a family that ends locks."""
+CALM = 1e-2
+"""Tail of a torus beyond a resonance, as a part of the largest."""
 
-FOLD = 1e-9
-"""Slope of the parameter along the family at a fold."""
-
-SECANTS = 30
-"""Most steps towards a fold."""
+LOCATED = 1e-6
+"""Slope of the parameter along the family at a fold, and logarithm of a modulus, that are 0."""
 
 
 def traced(
@@ -59,6 +58,7 @@ def traced(
     tol: float = 1e-8,
     rough: float = 1e-5,
     values: Mapping[str, float] | None = None,
+    released: str = "",
     max_points: int = MOST_STEPS,
 ) -> TorusBranch:
     """Return the family of tori through a torus over a parameter: see `per.trace`.
@@ -83,6 +83,8 @@ def traced(
         Largest `tail`: tori get as many angles as it asks for, up to 641.
     values : mapping of str to float, optional
         Other parameters (SI), in place of the torus's.
+    released : str
+        Another parameter that changes so that the rotation number stays, if any.
     max_points : int
         Most tori in each direction.
 
@@ -109,185 +111,192 @@ def traced(
     if not low <= begin <= high:
         raise ValueError(f"start is {begin:g}; it must lie within the bounds {low:g} to {high:g}")
     asked = [number("at", value) for value in ([at] if isinstance(at, int | float) else at)]
-    family = family_of(system, free, tol, (high - low) / scale, rough)
-    first = family.held(replace(torus, parameter=given), begin / scale)
-    first = None if first is None else family.refined(first)
-    if first is None:
+    other = _released(system, parameter, released)
+    family = family_of(system, free, tol, (high - low) / scale, rough, other)
+    held = family.held(replace(torus, parameter=given), begin / scale)
+    refined = None if held is None else family.refined(held)
+    if refined is None:
         raise TorusError(f"no torus is found at {parameter} = {begin:.9g}; another guess may lead to one")
+    first, tangent = refined
     ways = [way for way, end in ((-1, low), (1, high)) if begin != end]
     with meter(f"tracing tori over {parameter}", "tori") as show:
         halves = []
         for way in ways:
-            march = OneWay(family, parameter, (low / scale, high / scale), scale, way, asked, max_points)
+            march = OneWay(family, parameter, (low / scale, high / scale), scale, asked, max_points)
             made = []
-            for point in march.points(first):
+            for point in march.points(first, way * tangent):
                 made.append(point)
                 show(1, f"at {point.parameter:.6g}")
-            halves.append((made, march.told))
+            halves.append((made, march))
     one = _point(family, first, begin, "EP" if len(halves) == 1 else "")
+    orbits = tuple(orbit for _, march in halves for orbit in march.orbits)
     if len(halves) == 1:
-        points, stop = halves[0]
-        return TorusBranch(parameter, (one, *points), ("where it starts", stop))
-    (before, begins), (after, ends) = halves
-    return TorusBranch(parameter, (*before[::-1], one, *after), (begins, ends))
+        points, march = halves[0]
+        return TorusBranch(parameter, (one, *points), ("where it starts", march.told), released, orbits)
+    (before, early), (after, late) = halves
+    each = (*before[::-1], one, *after)
+    return TorusBranch(parameter, each, (early.told, late.told), released, orbits)
+
+
+def _released(system: System, parameter: str, released: str) -> int | None:
+    """The index of a parameter that is released, if any. Raises ValueError."""
+    if not released:
+        return None
+    if released == parameter:
+        raise ValueError(f"released is {released!r}, over which the tori are traced; it must be another")
+    return index_of(system, released)
 
 
 @dataclass
 class OneWay:
     """One way along a family, within bounds of the parameter (scaled).
 
-    stop: why it ended. lost: what lies between two of its tori and was not found.
+    stop: why it ended. lost: what lies between two of its tori and is not among them. orbits: on which it
+    locks.
     """
 
     family: Family
     parameter: str
     bounds: tuple[float, float]
     scale: float
-    way: int
     asked: Sequence[float]
     most: int
     stop: str = field(default="", init=False)
     lost: list[str] = field(default_factory=list, init=False)
+    orbits: tuple[Point, ...] = field(default=(), init=False)
 
     @property
     def told(self) -> str:
-        """Why it ended, and what on the way was not found."""
+        """Why it ended, and what on the way is not among its tori."""
         return "; ".join([self.stop, *self.lost])
 
-    def points(self, first: Section) -> Iterator[TorusPoint]:
-        """Yield the tori after the first; `stop` is known at the end."""
-        now, tangent, length = first, self._ahead(first), FIRST
-        largest = first.size
+    def points(self, first: Section, tangent: Array) -> Iterator[TorusPoint]:
+        """Yield the tori after the first, along a tangent; `stop` is known at the end."""
+        now, length, largest = self._one(first, ""), FIRST, first.size
+        path = [(now, tangent)]
         for _ in range(whole("max_points", self.most)):
-            found = self.family.corrected(now, tangent, length)
-            if found is None or through(now, found[0]) or self._turn(now, tangent, found[1]) > BENDS:
+            step = self._step(now, tangent, length)
+            if step is None:
                 length *= SHORTER
                 if length < SHORTEST:
-                    self.stop = self._lost(now)
+                    self._end(now.torus, tangent[-1], lost(now.torus))
                     return
                 continue
-            after, direction = found
-            yield from self._within(now, after, direction, tangent)
+            if step.folds or step.after.torus.tail > self.family.rough:
+                step = self._over(path, step) or step
+            after, ahead, length = step.after, step.ahead, step.length
+            yield from self._within(step, now.torus)
             if self.stop:
                 return
-            largest = max(largest, after.size)
-            if after.size < BORN * largest and after.size < now.size:
-                yield self._one(after, "EP")
-                self.stop = self._born(now, after)
+            largest = max(largest, after.torus.size)
+            if after.torus.size < BORN * largest and after.torus.size < now.torus.size:
+                yield replace(after, label="EP")
+                at = born(self.family, now.torus, after.torus) * self.scale
+                self.stop = f"the torus shrinks to an orbit, a torus bifurcation (NS) near {at:.9g}"
                 return
-            refined = self.family.refined(after)
-            if refined is None or refined.tail > self.family.rough:
-                last = refined or after
-                yield self._one(last, "EP")
-                self.stop = (
-                    f"the torus loses its smoothness: its highest harmonics are {last.tail:.0e} of the "
-                    f"largest with {len(last.states)} angles, and {MOST_ANGLES} are not enough"
-                )
-                return
-            if len(refined.states) != len(after.states):
-                direction = self._again(now, refined)
-            yield self._one(refined, "")
-            now, tangent, length = refined, direction, min(LONGER * length, LONGEST)
+            if after.torus.tail > self.family.rough:
+                finer = self.family.refined(after.torus)
+                if finer is None or finer[0].tail > self.family.rough:
+                    yield replace(after, label="EP")
+                    last = after.torus if finer is None else finer[0]
+                    self._end(last, ahead[-1], rough(last))
+                    return
+                after, ahead = self._one(finer[0], ""), finer[1] * np.sign(ahead[-1])
+            yield after
+            now, tangent, length = after, ahead, min(LONGER * length, LONGEST)
+            path.append((now, tangent))
         self.stop = f"{self.most} tori, as many as were asked for"
 
-    def _ahead(self, first: Section) -> Array:
-        """The direction in which the parameter goes the way asked for, the rest unchanged."""
-        unknowns = Unknowns(self.family.equations, first)
-        found = np.zeros(len(unknowns.weights))
-        found[-1] = self.way
-        return found
+    def _step(self, now: TorusPoint, tangent: Array, length: float) -> Step | None:
+        """A step along the family; None where it fails, or turns too far."""
+        found = self.family.corrected(now.torus, tangent, length)
+        if found is None or through(now.torus, found[0]):
+            return None
+        weights = Unknowns(self.family.equations, now.torus).weights
+        if weights @ (tangent * found[1]) < np.cos(BENDS):
+            return None
+        return Step(self.family, now, self._one(found[0], ""), tangent, found[1], length)
 
-    def _turn(self, now: Section, before: Array, after: Array) -> float:
-        """By how much (rad) the direction turns; nothing on the first step, whose direction is no tangent."""
-        weights = Unknowns(self.family.equations, now).weights
-        if np.count_nonzero(before) == 1:
-            return 0.0
-        return float(np.arccos(np.clip(weights @ (before * after), -1.0, 1.0)))
+    def _over(self, path: list[tuple[TorusPoint, Array]], rough: Step) -> Step | None:
+        """A step over a narrow resonance that one has come to, from a smooth torus before; None without one.
 
-    def _again(self, now: Section, refined: Section) -> Array:
-        """The direction from a torus to one with more angles."""
-        return self.family.direction(resampled(now, len(refined.states)), refined)
+        Newton's method is held at values of the parameter beyond: tangents near a resonance lead nowhere.
+        """
+        near = resonance(rough.after.torus)
+        count = len(rough.after.torus.states)
+        before = [each for each in path[-BACK:] if len(each[0].torus.states) == count]
+        if near is None or not before:
+            return None
+        start, tangent = min(before, key=lambda each: each[0].torus.tail)
+        begin = value_of(self.family, start.torus)
+        way, away = float(np.sign(tangent[-1])), value_of(self.family, rough.after.torus) - begin
+        length = max(way * away, SHORTEST * self.family.equations.scale)
+        while length < LONGEST * self.family.equations.scale:
+            length *= LONGER
+            found = self.family.directed(start.torus, begin + way * length)
+            if found is None or found[0].tail > CALM * self.family.rough:
+                continue
+            after = self._one(found[0], "")
+            if not (passed(start.torus, after.torus, near) and self._inside(after)):
+                continue
+            further = self._step(after, way * found[1], FIRST)
+            if further is not None and way * (further.after.parameter - after.parameter) > 0:
+                ends = sorted((start.parameter, after.parameter))
+                self.lost.append(f"it locks at {near} somewhere between {ends[0]:.9g} and {ends[1]:.9g}")
+                path.clear()
+                return Step(self.family, start, after, tangent, way * found[1], FIRST)
+        return None
 
-    def _within(self, now: Section, after: Section, ahead: Array, before: Array) -> Iterator[TorusPoint]:
-        """Yield what lies between two tori: a fold, values asked for, the end of the range."""
-        free = self.family.equations.free
-        a, b = float(now.parameter[free]), float(after.parameter[free])
-        if np.count_nonzero(before) > 1 and before[-1] * ahead[-1] < 0:
-            yield from self._found(self._fold(now, before, after), "LP", b)
-        for value in sorted((v / self.scale for v in self.asked), key=lambda v: abs(v - a)):
+    def _inside(self, point: TorusPoint) -> bool:
+        """Whether a torus is within the bounds."""
+        return self.bounds[0] < value_of(self.family, point.torus) < self.bounds[1]
+
+    def _within(self, step: Step, last: Section) -> Iterator[TorusPoint]:
+        """Yield what a step has beyond a last torus: special points, values asked for, the range's end."""
+        a, b = value_of(self.family, step.now.torus), value_of(self.family, step.after.torus)
+        found: list[tuple[Located, str, float]] = []
+        if step.folds:
+            found.append((step.fold(), "LP", b))
+        found += [(located, label, b) for located, label in step.crossings()]
+        for value in (v / self.scale for v in self.asked):
             if min(a, b) < value <= max(a, b):
-                yield from self._found(self.family.between(now, after, value), "UZ", value)
+                found.append((step.at_value(value), "UZ", value))
         low, high = self.bounds
-        for end, past in ((low, b <= low), (high, b >= high)):
-            if past:
-                yield from self._found(self.family.between(now, after, end), "EP", end)
-                self.stop = f"end of the range at {end * self.scale:.9g}"
+        end = low if b <= low else high if b >= high else None
+        if end is not None:
+            found.append((step.at_value(end), "EP", end))
+            self.stop = f"end of the range at {end * self.scale:.9g}"
+        there: list[tuple[Section, str]] = []
+        for located, label, value in found:
+            if located.torus is None or located.off > LOCATED:
+                self.lost.append(self._missed(located, label, value))
+            if located.torus is not None and step.along(located.torus) > step.along(last):
+                there.append((located.torus, label))
+        for torus, label in sorted(there, key=lambda each: step.along(each[0])):
+            yield self._one(torus, label)
+            if label == "EP":
                 return
 
-    def _found(self, torus: Section | None, label: str, value: float) -> Iterator[TorusPoint]:
-        """Yield a torus with its label; where there is none, write that down."""
-        if torus is None:
-            self.lost.append(f"no torus {label} was found near {value * self.scale:.9g}")
-        else:
-            yield self._one(torus, label)
-
-    def _fold(self, now: Section, tangent: Array, after: Section) -> Section | None:
-        """The torus at which the parameter turns back, by secants on its slope."""
-        unknowns = Unknowns(self.family.equations, now)
-        far = float(np.sqrt(unknowns.weights @ (unknowns.of(after) - unknowns.of(now)) ** 2))
-        values = {0.0: now, far: after}
-        for _ in range(SECANTS):
-            if not (three := self._three(values, float(np.sign(tangent[-1])))):
-                return None
-            (s0, p0), (s1, p1), (s2, p2) = three
-            bend = (p2 - p1) / (s2 - s1) - (p1 - p0) / (s1 - s0)
-            if bend == 0:
-                return None
-            slope = (p1 - p0) / (s1 - s0)
-            top = (s0 + s1) / 2 - slope * (s2 - s0) / (2 * bend)
-            if not 0 < top < 2 * far or min(abs(top - s) for s in values) < FOLD * far:
-                break
-            found = self.family.corrected(now, tangent, top)
-            if found is None:
-                return None
-            values[top] = found[0]
-        return max(values.items(), key=lambda each: self._value(each[1]) * np.sign(tangent[-1]))[1]
-
-    def _three(self, values: dict[float, Section], sign: float) -> list[tuple[float, float]]:
-        """Places and parameters of three tori about the fold."""
-        if len(values) == 2:
-            (s0, early), (s1, late) = sorted(values.items())
-            middle = self.family.corrected(early, self.family.direction(early, late), (s1 - s0) / 2)
-            if middle is None:
-                return []
-            values[(s0 + s1) / 2] = middle[0]
-        ways = [(s, self._value(torus)) for s, torus in sorted(values.items())]
-        top = max(range(len(ways)), key=lambda k: sign * ways[k][1])
-        begin = min(max(top - 1, 0), max(len(ways) - 3, 0))
-        return ways[begin : begin + 3]
-
-    def _value(self, torus: Section) -> float:
-        return float(torus.parameter[self.family.equations.free])
+    def _missed(self, located: Located, label: str, value: float) -> str:
+        """That a torus within a step was not found, or not exactly."""
+        if located.torus is None:
+            return f"no torus {label} was found near {value * self.scale:.9g}"
+        return (
+            f"the torus {label} near {value_of(self.family, located.torus) * self.scale:.9g} was located to "
+            f"{located.off:.0e} only: another family passes there"
+        )
 
     def _one(self, torus: Section, label: str) -> TorusPoint:
-        return _point(self.family, torus, self._value(torus) * self.scale, label)
+        return _point(self.family, torus, value_of(self.family, torus) * self.scale, label)
 
-    def _born(self, before: Section, after: Section) -> str:
-        """Where the torus has no size, by its square, which grows linearly from there."""
-        a, b = before.size**2, after.size**2
-        at = self._value(after) + (self._value(after) - self._value(before)) * b / (a - b)
-        return f"the torus shrinks to an orbit, a torus bifurcation (NS) near {at * self.scale:.9g}"
-
-    def _lost(self, now: Section) -> str:
-        """Why no further torus was found."""
-        turns = now.rotation_number
-        near = Fraction(turns).limit_denominator(LARGEST)
-        if abs(turns - near) < LOCKS / near.denominator**2:
-            return (
-                f"the motion locks: the rotation number {turns:.9g} is near {near}; beyond there are orbits "
-                f"of {near.denominator} periods"
-            )
-        return f"Newton's method finds no torus beyond, with a rotation number of {turns:.9g}"
+    def _end(self, last: Section, way: float, otherwise: str) -> None:
+        """Write down how the family ends at a torus: it locks, or otherwise."""
+        near = resonance(last)
+        if near is None or last.free:
+            self.stop = otherwise
+            return
+        self.orbits = orbits_beyond(self.family, last, near.denominator, way)
+        self.stop = locked(last, near, self.orbits)
 
 
 def through(before: Section, after: Section) -> bool:
@@ -297,5 +306,5 @@ def through(before: Section, after: Section) -> bool:
 
 
 def _point(family: Family, torus: Section, value: float, label: str) -> TorusPoint:
-    sizes = moduli(family.equations.system, torus)
-    return TorusPoint(torus, value, sizes, stable(sizes, torus.free), label)
+    found = torus_multipliers(family.equations.system, torus)
+    return TorusPoint(torus, value, found, stable(np.abs(found), torus.free), label)

@@ -56,7 +56,7 @@ def test_velocity_is_in_SI() -> None:
 
 
 def test_family_goes_on_the_way_it_has_come() -> None:
-    """Assert the length and direction of two steps, and that the second is foreseen to second order."""
+    """Assert the length of two steps, foreseen to second order by one tangent, to third by both."""
     system, born = sym.scene("jeffcott-internal-damping"), branch().labelled("NS")[0]
     family, off = family_of(system, index_of(system, "n"), 1e-8), []
     weights = np.concatenate([np.full(11 * len(system.states), 1 / 11), [1.0, 1.0]])
@@ -68,9 +68,11 @@ def test_family_goes_on_the_way_it_has_come() -> None:
         assert found is not None
         way = unknowns(found[0]) - unknowns(now)
         assert weights @ (tangent * way) == pytest.approx(length, rel=1e-9)
-        assert found[1] == pytest.approx(way / np.sqrt(weights @ way**2), rel=1e-12)
-        off.append(np.sqrt(weights @ (way - length * tangent) ** 2))
-    assert off[0] < 0.01 and 2.5 < off[0] / off[1] < 6
+        assert weights @ found[1] ** 2 == pytest.approx(1)
+        middle = (tangent + found[1] / (weights @ (tangent * found[1]))) / 2
+        off.append([np.sqrt(weights @ (way - length * each) ** 2) for each in (tangent, middle)])
+    assert off[0][0] < 0.01 and 2.5 < off[0][0] / off[1][0] < 6
+    assert off[0][1] < 0.001 and 5 < off[0][1] / off[1][1] < 12
 
 
 def test_what_is_no_torus_is_refused() -> None:
