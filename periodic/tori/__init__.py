@@ -1,17 +1,17 @@
 """Quasi-periodic motions: tori, as invariant curves of the map over a period, and their families."""
 
 from periodic.tori.averages import average, in_time, surface
-from periodic.tori.spectrum import Lines, spectrum
+from periodic.tori.combinations import Combinations, combinations
 from periodic.tori.stability import torus_multipliers
 from periodic.tori.torusbranch import TorusBranch, TorusPoint
 
 __all__ = [
-    "Lines",
+    "Combinations",
     "TorusBranch",
     "TorusPoint",
     "average",
     "in_time",
-    "spectrum",
+    "combinations",
     "surface",
     "torus_multipliers",
 ]

@@ -115,7 +115,7 @@ def test_motion_in_time_is_that_of_the_equations() -> None:
 def test_spectrum(tmp_path: Path) -> None:
     """Assert Parseval's sum of all lines, and the strongest against a long motion's Fourier sum."""
     system, torus = forced(), per.settled_torus(forced())
-    lines = per.tori.spectrum(system, torus, "x", lines=1000)
+    lines = per.tori.combinations(system, torus, "x", lines=1000)
     mean = lines.amplitudes[(lines.orders == 0).all(axis=1)]
     power = (lines.amplitudes**2).sum() / 2 + (mean**2).sum() / 2
     assert power == pytest.approx(per.tori.average(system, torus, lambda s: s["x"] ** 2), rel=1e-10)
@@ -126,12 +126,12 @@ def test_spectrum(tmp_path: Path) -> None:
         assert one == pytest.approx(size, rel=1e-5)
     own = 1.4 * (1 - torus.rotation_number)
     assert lines.frequencies[:2] == pytest.approx([own, 1.4], rel=1e-9)
-    assert repr(lines).startswith("Lines(") and "of x, the strongest 1.9" in repr(lines)
+    assert repr(lines).startswith("Combinations(") and "of x, the strongest 1.9" in repr(lines)
     axes = lines.plot()
     assert axes.get_ylabel() == "amplitude of x"
     axes.figure.savefig(tmp_path / "spectrum.png")
-    with pytest.raises(ValueError, match="spectrum is 'y'; it must be one of x, v"):
-        per.tori.spectrum(system, torus, "y")
+    with pytest.raises(ValueError, match="name is 'y'; it must be one of x, v"):
+        per.tori.combinations(system, torus, "y")
 
 
 def test_tables_and_pictures(tmp_path: Path) -> None:

@@ -26,7 +26,7 @@ NAMED = 6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Lines:
+class Combinations:
     """The strongest lines of a state, the mean among them, the strongest first.
 
     Parameters
@@ -49,7 +49,7 @@ class Lines:
 
     def __repr__(self) -> str:
         strongest = f"{self.amplitudes[0]:.4g} at {self.frequencies[0]:.6g} rad/s"
-        return f"Lines({len(self.orders)} of {self.name}, the strongest {strongest})"
+        return f"Combinations({len(self.orders)} of {self.name}, the strongest {strongest})"
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Plot amplitudes over frequency, the strongest lines named by k and j.
@@ -76,9 +76,9 @@ class Lines:
         return dressed(axes, "frequency (rad/s)", with_unit(f"amplitude of {self.name}", self.unit))
 
 
-def spectrum(
+def combinations(
     system: System, torus: Section, name: str, *, lines: int = LINES, samples: int = SAMPLES
-) -> Lines:
+) -> Combinations:
     """Return the spectrum of a state along the motion on a torus.
 
     With phi = omega_1 t and theta the angle at t = 0 the state is a sum of c_kj exp(i (k phi + j (theta +
@@ -99,7 +99,7 @@ def spectrum(
 
     Returns
     -------
-    Lines
+    Combinations
         Frequencies and amplitudes.
 
     Raises
@@ -109,7 +109,7 @@ def spectrum(
     TorusError
         Where a motion cannot be followed.
     """
-    one_of("spectrum", name, [q.name for q in torus.layout.states])
+    one_of("name", name, [q.name for q in torus.layout.states])
     column = torus.layout.column(name)
     states = torus.units[name] * surface(system, torus, whole("samples", samples, 2))[:, :-1, column.index]
     count = len(states)
@@ -124,4 +124,4 @@ def spectrum(
     sizes = np.where((j == 0) & (k == 0), 1.0, 2.0) * np.abs(found)
     order = np.argsort(-sizes[once])[: whole("lines", lines, 1)]
     orders = np.column_stack([k[once][order], j[once][order]]).astype(int)
-    return Lines(name, column.unit, orders, np.abs(at[once][order]), sizes[once][order])
+    return Combinations(name, column.unit, orders, np.abs(at[once][order]), sizes[once][order])
