@@ -45,7 +45,9 @@ def average(system: System, torus: Section, function: Function, *, samples: int 
         Where a motion cannot be followed.
     """
     states = surface(system, torus, whole("samples", samples, 2))
-    return float(np.mean(function(_named(torus, states[:, :-1].reshape(-1, states.shape[2])))))
+    each = np.asarray(function(_named(torus, states[:, :-1].reshape(-1, states.shape[2]))))
+    values = np.broadcast_to(each, len(states) * samples).reshape(-1, samples)
+    return float(torus.grid.weights @ values.mean(axis=1))
 
 
 def surface(system: System, torus: Section, samples: int = SAMPLES) -> Array:

@@ -10,14 +10,19 @@ import numpy as np
 from periodic.checks import positive
 from periodic.orbit.scheme import Array
 from periodic.system import System
+from periodic.tori.breaks import breaks_of, moved
+from periodic.tori.grid import Grid
 from periodic.tori.invariance import Invariance, Unknowns, solved
 from periodic.tori.section import Section
 
 FINEST = 1e-13
 """Finest tolerance of the integration."""
 
-FINER = 100.0
+FINER = 1000.0
 """How many times finer than tori motions are integrated."""
+
+ROUNDS = 12
+"""Most times that angles are added, or breaks moved."""
 
 MOST_ANGLES = 641
 """Most angles of a section."""
@@ -72,15 +77,27 @@ class Family:
         """
         value = float(torus.parameter[self.equations.free])
         found = self.directed(torus, value)
-        while found is not None and found[0].tail > self.rough and len(found[0].states) < MOST_ANGLES:
-            found = self.directed(resampled(found[0], 2 * len(found[0].states) - 1), value)
+        for _ in range(ROUNDS):
+            if found is None or self.resolved(found[0]):
+                break
+            now, count = found[0], len(found[0].states)
+            breaks = breaks_of(self.equations.system, now)
+            if not moved(now.breaks, breaks):
+                if count >= MOST_ANGLES:
+                    break
+                count = 2 * count - 1
+            found = self.directed(resampled(now, count, breaks), value)
         return found
 
+    def resolved(self, torus: Section) -> bool:
+        """Return whether a torus has enough angles, and breaks where it crosses surfaces."""
+        broken = moved(torus.breaks, breaks_of(self.equations.system, torus))
+        return torus.tail <= self.rough and not broken
 
-def resampled(torus: Section, count: int) -> Section:
-    """Return a torus with another number of angles."""
-    angles = 2 * np.pi * np.arange(count) / count
-    return replace(torus, states=torus.states_at(angles))
+
+def resampled(torus: Section, count: int, breaks: Array) -> Section:
+    """Return a torus with another number of angles, or other breaks."""
+    return replace(torus, states=torus.states_at(Grid(count, breaks).angles), breaks=breaks)
 
 
 def family_of(

@@ -1,9 +1,9 @@
 """The equations of an invariant curve of the map over a period T, x(0) -> x(T), and their solution.
 
-The curve u(theta), theta in [0, 2 pi), is a Fourier series given by its values at an odd number M of
-equispaced angles. On a torus the map P turns it by the angle rho: with R the shift of a series in its angle,
+The curve u(theta), theta in [0, 2 pi), is given by its values at M angles (`grid`), equispaced and an odd
+number where it is smooth. On a torus the map P turns it by the angle rho:
 
-    (R_{-rho} P(u))(theta_j) = u(theta_j),   sum_j (u_j - v_j) . v'_j = 0,
+    P(u(theta_j - rho)) = u(theta_j),   sum_j w_j (u_j - v_j) . v'_j = 0,
 
 the second a phase condition with the curve v before (Schilder, Osinga & Vogt, SIAM J. Appl. Dyn. Syst.
 4 (2005) 459-488; Kuznetsov, Elements of Applied Bifurcation Theory, 7.3). T is the period of the excitation;
@@ -23,7 +23,7 @@ from periodic.phasespace.crowd import Crowd
 from periodic.system import System
 from periodic.system.ensembles import FOLLOWED
 from periodic.system.precision import MOST_ITERATIONS
-from periodic.tori.section import Section, interpolation, tail_of
+from periodic.tori.section import Section
 
 DIFFERENCE = 1e-5
 """Step of differences in the period and in a parameter, as a part of their sizes."""
@@ -55,23 +55,24 @@ class Invariance:
         k: rho, T where it is free, and the parameter.
         """
         count, n = torus.states.shape
-        images, slopes = self.mapped(torus)
-        back, slope = interpolation(count, angles(count) - torus.rotation)
-        residual = (back @ images - torus.states).ravel()
-        moved = np.einsum("jk,kab->jakb", back, slopes).reshape(count * n, count * n)
+        back, slope = torus.grid.interpolation(torus.grid.angles - torus.rotation)
+        before = back @ torus.states
+        images, slopes = self.mapped(torus, before)
+        residual = (images - torus.states).ravel()
+        moved = np.einsum("jk,jab->jakb", back, slopes).reshape(count * n, count * n)
         if self.released is None:
-            columns = [(-slope @ images).ravel()]
+            columns = [-np.einsum("jab,jb->ja", slopes, slope @ torus.states).ravel()]
         else:
-            columns = [(back @ self._by_parameter(torus, self.released, 1.0)).ravel()]
+            columns = [self._by_parameter(torus, before, self.released, 1.0).ravel()]
         if torus.free:
-            columns.append((back @ self._by_period(torus)).ravel())
-        columns.append((back @ self._by_parameter(torus, self.free, self.scale)).ravel())
+            columns.append(self._by_period(torus, before).ravel())
+        columns.append(self._by_parameter(torus, before, self.free, self.scale).ravel())
         return residual, np.column_stack([moved - np.eye(count * n), *columns])
 
-    def mapped(self, torus: Section) -> tuple[Array, Array]:
-        """Return the images of the states, (M, n), and the derivatives of the map there, (M, n, n)."""
-        crowd, n = self._crowd(torus.parameter), torus.states.shape[1]
-        y = crowd.begin(torus.states)
+    def mapped(self, torus: Section, states: Array) -> tuple[Array, Array]:
+        """Return the images of states (K, n), and the derivatives of a torus's map there, (K, n, n)."""
+        crowd, n = self._crowd(torus.parameter), states.shape[1]
+        y = crowd.begin(states)
         found = crowd.run(y, 1, torus.period, tangents=crowd.tangents(y), raw=True)
         if (found.outcome != FOLLOWED).any() or not np.isfinite(found.tangents).all():
             raise ArithmeticError("a motion on the torus cannot be followed")
@@ -82,21 +83,21 @@ class Invariance:
         ends = [self._ends(torus.states, torus.parameter, side * STEP) for side in (1, 0)]
         return (ends[0] - ends[1]) / STEP
 
-    def _by_period(self, torus: Section) -> Array:
-        """Derivative of the images in T, (M, n)."""
+    def _by_period(self, torus: Section, before: Array) -> Array:
+        """Derivative of the images of states (M, n) in T, (M, n)."""
         step = DIFFERENCE * torus.period
-        ends = [self._ends(torus.states, torus.parameter, torus.period + s * step) for s in (1, -1)]
+        ends = [self._ends(before, torus.parameter, torus.period + s * step) for s in (1, -1)]
         return (ends[0] - ends[1]) / (2 * step)
 
-    def _by_parameter(self, torus: Section, which: int, scale: float) -> Array:
-        """Derivative of the images in a parameter over its scale, (M, n)."""
+    def _by_parameter(self, torus: Section, before: Array, which: int, scale: float) -> Array:
+        """Derivative of the images of states (M, n) in a parameter over its scale, (M, n)."""
         value = torus.parameter[which]
         step = DIFFERENCE * max(abs(value), 1e-3 * scale)
         ends = []
         for side in (1, -1):
             parameter = torus.parameter.copy()
             parameter[which] = value + side * step
-            ends.append(self._ends(torus.states, parameter, torus.period))
+            ends.append(self._ends(before, parameter, torus.period))
         return (ends[0] - ends[1]) / (2 * step) * scale
 
     def _ends(self, states: Array, parameter: Array, stretch: float) -> Array:
@@ -111,11 +112,6 @@ class Invariance:
 
     def _crowd(self, parameter: Array) -> Crowd:
         return Crowd(self.system, parameter, self.tolerance)
-
-
-def angles(count: int) -> Array:
-    """Return the equispaced angles of a curve."""
-    return np.asarray(2 * np.pi * np.arange(count) / count)
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,24 +146,24 @@ class Unknowns:
             period=float(values[count + 1]) if self.like.free else self.like.period,
             parameter=parameter,
             residual=np.inf,
-            tail=tail_of(states),
+            tail=self.like.grid.tail(states),
         )
 
     @cached_property
     def weights(self) -> Array:
-        """Weights in the arclength: states by 1/M, M the number of angles, others by 1."""
-        count, n = self.like.states.shape
-        return np.concatenate([np.full(count * n, 1 / count), np.ones(3 if self.like.free else 2)])
+        """Weights in the arclength: states by those of an average over the angles, others by 1."""
+        own = np.repeat(self.like.grid.weights, self.like.states.shape[1])
+        return np.concatenate([own, np.ones(3 if self.like.free else 2)])
 
 
 def phase_rows(equations: Invariance, torus: Section) -> Array:
     """Return what the phase conditions hold, over all unknowns, (1 or 2, M n + k)."""
-    count = len(torus.states)
-    rows = [interpolation(count, angles(count))[1] @ torus.states]
+    grid = torus.grid
+    rows = [grid.interpolation(grid.angles)[1] @ torus.states]
     if torus.free:
         rows.append(equations.rates(torus))
     zeros = np.zeros(3 if torus.free else 2)
-    return np.array([np.concatenate([row.ravel() / count, zeros]) for row in rows])
+    return np.array([np.concatenate([(grid.weights[:, None] * row).ravel(), zeros]) for row in rows])
 
 
 def solved(
@@ -190,8 +186,7 @@ def solved(
             gaps = [*(along @ (values - origin)), held @ values - level]
             matrix = np.vstack([jacobian, along, held])
             if size < tol and np.abs(gaps).max() < tol:
-                found = replace(torus, residual=size, tail=tail_of(torus.states))
-                return found, _tangent(matrix, unknowns.weights)
+                return replace(torus, residual=size), _tangent(matrix, unknowns.weights)
             values = values - np.linalg.solve(matrix, np.append(residual, gaps))
     except (ArithmeticError, np.linalg.LinAlgError):
         return None

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from periodic.checks import one_of
 from periodic.orbit.layout import Layout
 from periodic.orbit.scheme import Array
+from periodic.tori.grid import Grid
 
 
 class TorusError(ArithmeticError):
@@ -28,6 +30,7 @@ class Section:
     residual: float = np.inf
     tail: float = np.inf
     free: bool = False
+    breaks: Array = field(default_factory=lambda: np.zeros(0))
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}(rotation number {self.rotation_number:.9g}, {len(self.states)} angles)"
@@ -56,7 +59,13 @@ class Section:
     @property
     def size(self) -> float:
         """How far the section is from its middle, root mean square of all scaled states; 0 at birth."""
-        return float(np.sqrt(((self.states - self.states.mean(axis=0)) ** 2).sum(axis=1).mean()))
+        middle = self.grid.weights @ self.states
+        return float(np.sqrt(self.grid.weights @ ((self.states - middle) ** 2).sum(axis=1)))
+
+    @cached_property
+    def grid(self) -> Grid:
+        """The angles at which the section is known."""
+        return Grid(len(self.states), self.breaks)
 
     def section(self, name: str, angles: Array | None = None) -> Array:
         """Return a state around the section at tau = 0.
@@ -66,7 +75,7 @@ class Section:
         name : str
             A state; its velocity x' is dx/dt.
         angles : ndarray, optional
-            theta in rad; by default the M equispaced ones.
+            theta in rad; by default the M of the section.
 
         Returns
         -------
@@ -100,28 +109,8 @@ class Section:
         ndarray, shape (K, n)
             The states.
         """
-        return interpolation(len(self.states), angles)[0] @ self.states
+        return self.grid.interpolation(angles)[0] @ self.states
 
 
 Function = Callable[[Mapping[str, Array]], Array]
 """Of states in SI by their names, each an array, as ``lambda s: s["x"] ** 2``."""
-
-
-def interpolation(count: int, at: Array) -> tuple[Array, Array]:
-    """Return the matrices (K, M) that make a series and its slope at angles (K,) of M equispaced values.
-
-    Their elements are Dirichlet's kernel and its slope at the differences of the angles.
-    """
-    order = np.arange(1, count // 2 + 1)
-    there = np.multiply.outer(at, order)
-    own = np.multiply.outer(order, 2 * np.pi * np.arange(count) / count)
-    cos, sin = np.cos(there), np.sin(there)
-    value = 1 + 2 * (cos @ np.cos(own) + sin @ np.sin(own))
-    slope = 2 * ((cos * order) @ np.sin(own) - (sin * order) @ np.cos(own))
-    return value / count, slope / count
-
-
-def tail_of(states: Array) -> float:
-    """The highest two harmonics of a curve, relative to its largest one."""
-    size = np.abs(np.fft.rfft(states, axis=0))[1:].max(axis=1)
-    return float(size[-2:].max() / max(size.max(), np.finfo(float).tiny))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
@@ -22,7 +22,7 @@ from periodic.system import System, check_system
 from periodic.system.ensembles import FOLLOWED
 from periodic.tori.born import check_angles
 from periodic.tori.family import family_of
-from periodic.tori.invariance import angles as angles_of
+from periodic.tori.grid import FEWEST, TURN, Grid
 from periodic.tori.section import TorusError
 from periodic.tori.torus import Torus
 
@@ -157,7 +157,23 @@ class Settled:
             )
         _, turns, curve = next(each for each in tried if each[0] < max(2 * least, GOOD))
         layout, rotation = layout_of(self.crowd.system), 2 * np.pi * turns
-        return Torus(curve, rotation, self.crowd.parameter.copy(), period, layout, free=free)
+        found = Torus(curve, rotation, self.crowd.parameter.copy(), period, layout, free=free)
+        return found if free else self._broken(found, sections)
+
+    def _broken(self, torus: Torus, sections: Array) -> Torus:
+        """A first curve in pieces, through all sections, where they are on both sides of a surface."""
+        system, at = self.crowd.system, np.mod(torus.rotation * np.arange(float(len(sections))), TURN)
+        order = np.argsort(at)
+        at, states = at[order], sections[order]
+        signs = np.sign(system.switch(states, np.zeros(len(states)), torus.parameter))
+        crossed = np.flatnonzero((signs != np.roll(signs, -1, axis=0)).any(axis=1))
+        count = len(torus.states)
+        if not 1 < len(crossed) <= count // FEWEST:
+            return torus
+        middle = at[crossed] + np.mod(at[(crossed + 1) % len(at)] - at[crossed], TURN) / 2
+        grid = Grid(count, np.sort(np.mod(middle, TURN)))
+        curve = np.asarray(np.linalg.lstsq(grid.interpolation(at)[0], states, rcond=None)[0], dtype=float)
+        return replace(torus, states=curve, breaks=grid.breaks, tail=grid.tail(curve))
 
     def _states(self, count: int, width: float) -> Array:
         """States of the motion at equal times, (count, n)."""
@@ -188,7 +204,7 @@ def _fitted(states: Array, size: Array, turns: float, angles: int) -> tuple[floa
     matrix = np.hstack([np.cos(both), np.sin(both)])
     found, *_ = scipy.linalg.lstsq(matrix, states / size, cond=1e-10, lapack_driver="gelsy")
     off = float(np.sqrt(((matrix @ found - states / size) ** 2).mean(axis=0)).max())
-    at = np.multiply.outer(angles_of(angles), orders)
+    at = np.multiply.outer(Grid(angles).angles, orders)
     curve = np.hstack([np.cos(at), np.sin(at)]) @ found
     return off, turns, curve * size
 

@@ -16,8 +16,9 @@ import numpy as np
 from periodic.bifurcations.label import Label
 from periodic.orbit.scheme import Array
 from periodic.system import System
-from periodic.tori.invariance import Invariance, angles
-from periodic.tori.section import Section, interpolation
+from periodic.tori.grid import Grid
+from periodic.tori.invariance import Invariance
+from periodic.tori.section import Section
 
 FINE = 1e-11
 """Tolerance of the integration."""
@@ -98,7 +99,7 @@ def _spectrum(system: System, torus: Section) -> tuple[Array, Array]:
         group = slice(ends[k], ends[alike])
         middle = ends[k] + np.lexsort((-values[group].imag, np.round(np.abs(means[group]), 2)))[: alike - k]
         for place, j in enumerate(middle, k):
-            found[place] = sizes[place] * np.exp(1j * np.angle(values[j]))
+            found[place] = values[j]
             halves[place] = 0.25 < abs(means[j]) < 0.75
         k = alike
     return found, halves
@@ -107,15 +108,15 @@ def _spectrum(system: System, torus: Section) -> tuple[Array, Array]:
 def _eigenvalues(system: System, torus: Section) -> tuple[Array, Array]:
     """The eigenvalues of L whose vectors are smooth, and the mean of each vector's harmonics."""
     count, n = torus.states.shape
-    slopes = Invariance(system, 0, FINE).mapped(torus)[1]
-    if count * n > MOST:
-        fewer = MOST // n // 2 * 2 - 1
-        slopes = np.einsum("jk,kab->jab", interpolation(count, angles(fewer))[0], slopes)
-        count = fewer
-    back = interpolation(count, angles(count) - torus.rotation)[0]
-    matrix = np.einsum("jk,kab->jakb", back, slopes).reshape(count * n, count * n)
+    grid = torus.grid if count * n <= MOST else Grid(MOST // n // 2 * 2 - 1)
+    count = grid.count
+    slopes = Invariance(system, 0, FINE).mapped(torus, torus.states_at(grid.angles - torus.rotation))[1]
+    back = grid.interpolation(grid.angles - torus.rotation)[0]
+    matrix = np.einsum("jk,jab->jakb", back, slopes).reshape(count * n, count * n)
     values, vectors = np.linalg.eig(matrix)
-    harmonics = np.abs(np.fft.fft(vectors.reshape(count, n, -1), axis=0)) ** 2
+    even = grid.interpolation(Grid(count).angles)[0]
+    shapes = np.einsum("jk,kas->jas", even, vectors.reshape(count, n, -1))
+    harmonics = np.abs(np.fft.fft(shapes, axis=0)) ** 2
     harmonics = harmonics.sum(axis=1) / harmonics.sum(axis=(0, 1))
     orders = np.fft.fftfreq(count, 1 / count)
     rough = np.abs(orders) @ harmonics

@@ -18,7 +18,7 @@ class Torus(Section):
     Parameters
     ----------
     states : ndarray, shape (M, n)
-        Scaled states at tau = 0 and M equispaced angles theta.
+        Scaled states at tau = 0 and M angles theta: equispaced, or Gauss' points between breaks.
     rotation : float
         rho in rad: by how much theta grows in one period.
     parameter : ndarray, shape (p,)
@@ -33,6 +33,8 @@ class Torus(Section):
         Largest of the two highest harmonics of the curve, relative to its largest: an estimate of the error.
     free : bool
         Whether the system is not excited, so that the period is determined with the torus.
+    breaks : ndarray, shape (B,)
+        Angles at which the section crosses a surface, as of a contact; none where it does not.
     """
 
     def traced(

@@ -194,7 +194,7 @@ class OneWay:
                 at = born(self.family, now.torus, after.torus) * self.scale
                 self.stop = f"the torus shrinks to an orbit, a torus bifurcation (NS) near {at:.9g}"
                 return
-            if after.torus.tail > self.family.rough:
+            if not self.family.resolved(after.torus):
                 finer = self.family.refined(after.torus)
                 if finer is None or finer[0].tail > self.family.rough:
                     yield replace(after, label="EP")
