@@ -18,7 +18,7 @@ from periodic.tori.section import Section
 FINEST = 1e-13
 """Finest tolerance of the integration."""
 
-FINER = 1000.0
+FINER = 100.0
 """How many times finer than tori motions are integrated."""
 
 ROUNDS = 12

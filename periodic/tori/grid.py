@@ -8,7 +8,7 @@ Gauss' points, and what is wrong with it shrinks with their number as it does fo
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -34,7 +34,7 @@ class Grid:
         if not len(self.breaks):
             return TURN * np.arange(self.count) / self.count
         pieces = zip(self.breaks, self._widths, self._sizes, strict=True)
-        return np.concatenate([at + wide * (1 + legendre.leggauss(n)[0]) / 2 for at, wide, n in pieces])
+        return np.concatenate([at + wide * (1 + _points(n)[0]) / 2 for at, wide, n in pieces])
 
     @cached_property
     def weights(self) -> Array:
@@ -42,7 +42,7 @@ class Grid:
         if not len(self.breaks):
             return np.full(self.count, 1 / self.count)
         pieces = zip(self._widths, self._sizes, strict=True)
-        return np.concatenate([legendre.leggauss(n)[1] * wide / 2 / TURN for wide, n in pieces])
+        return np.concatenate([_points(n)[1] * wide / 2 / TURN for wide, n in pieces])
 
     def interpolation(self, at: Array) -> tuple[Array, Array]:
         """Return the matrices (K, M) that make the curve and its slope at angles (K,) of its values."""
@@ -55,10 +55,10 @@ class Grid:
         for k, (wide, n) in enumerate(zip(self._widths, self._sizes, strict=True)):
             mine = np.flatnonzero(piece == k)
             local = 2 * (since[mine] - (self.breaks[k] - self.breaks[0])) / wide - 1
-            inverse = _transform(n)
+            terms, inverse = legendre.legvander(local, n - 1), _transform(n)
             own = np.arange(first, first + n)
-            value[np.ix_(mine, own)] = legendre.legvander(local, n - 1) @ inverse
-            slope[np.ix_(mine, own)] = _slopes(local, n) @ inverse * 2 / wide
+            value[np.ix_(mine, own)] = terms @ inverse
+            slope[np.ix_(mine, own)] = terms @ _derivative(n) @ inverse * 2 / wide
             first += n
         return value, slope
 
@@ -96,14 +96,22 @@ def _fourier(count: int, at: Array) -> tuple[Array, Array]:
     return value / count, slope / count
 
 
+@cache
+def _points(count: int) -> tuple[Array, Array]:
+    """Gauss' points in (-1, 1) and their weights."""
+    nodes, weights = legendre.leggauss(count)
+    return np.asarray(nodes), np.asarray(weights)
+
+
+@cache
 def _transform(count: int) -> Array:
     """What makes the terms of Legendre's series of values at Gauss' points."""
-    nodes, weights = legendre.leggauss(count)
-    return np.asarray(
-        (legendre.legvander(nodes, count - 1) * weights[:, None]).T * (np.arange(count) + 0.5)[:, None]
-    )
+    nodes, weights = _points(count)
+    terms = legendre.legvander(nodes, count - 1) * weights[:, None]
+    return np.asarray(terms.T * (np.arange(count) + 0.5)[:, None])
 
 
-def _slopes(local: Array, count: int) -> Array:
-    """Derivatives of Legendre's polynomials, (K, count)."""
-    return np.column_stack([legendre.legval(local, legendre.legder(np.eye(count)[k])) for k in range(count)])
+@cache
+def _derivative(count: int) -> Array:
+    """What makes the terms of a series' derivative of its own."""
+    return np.vstack([legendre.legder(np.eye(count)), np.zeros(count)])

@@ -99,7 +99,7 @@ def _spectrum(system: System, torus: Section) -> tuple[Array, Array]:
         group = slice(ends[k], ends[alike])
         middle = ends[k] + np.lexsort((-values[group].imag, np.round(np.abs(means[group]), 2)))[: alike - k]
         for place, j in enumerate(middle, k):
-            found[place] = values[j]
+            found[place] = sizes[place] * np.exp(1j * np.angle(values[j]))
             halves[place] = 0.25 < abs(means[j]) < 0.75
         k = alike
     return found, halves

@@ -12,7 +12,7 @@ enum { PLUS = 1, STUCK = 2 };
 enum { FOLLOWED, SPENT, DIVERGED, PILED, LOST };
 enum { STAGES = 12, ROWS = 6, PIVOTS = 1000, ROOTS = 60, GUARDS = 2 * SURFACES + 1, MARKS = 15, CLEAN = 6 };
 
-static const double NOISE = 1e-12, SHARP = 1e-3, BESIDE = 1e-13, LOW = 0.1, TINY = 1e-14;
+static const double NOISE = 1e-12, SHARP = 1e-3, BESIDE = 1e-13, LOW = 0.1, TINY = 1e-14, ASIDE = 1e-9;
 static const double STABLE = 6.1; /* of the explicit steps, on the negative axis */
 
 /* Changes of mode that are left to the caller. count < 0: the motion begins. */
@@ -43,10 +43,36 @@ static double greater(double a, double b) { return a > b ? a : b; }
 
 /* ---- rates, of the motion and of its tangents ---- */
 
+/* A place at which derivatives are those of the sides that the kinks' modes tell: y, or y moved there from a
+   surface on which, or hardly beyond which, it is. */
+static const double *sided(const Given *o, const Motion *m, double tau, const double *y, double *moved) {
+    double values[SWITCHES + 1], slopes[SWITCHES + 1], gradients[SWITCHES * N + 1], along[SWITCHES + 1];
+    const double *at = y;
+    int known = 0;
+    for (int j = 0; j < m->count; j++) {
+        const int i = m->surface[j];
+        if (KIND[i] != KINK || COLUMN[i] >= 0) continue;
+        if (!known++) guards(y, tau, m->side, o->kept_guards, values, slopes);
+        const double inside = m->sign[j] * values[m->at[j]], least = ASIDE * (1 + m->size[j]);
+        if (inside >= least) continue;
+        if (at == y) {
+            memcpy(moved, y, N * sizeof *y);
+            gradient(y, tau, m->side, o->kept_gradient, gradients, along);
+            at = moved;
+        }
+        const double *way = gradients + m->at[j] * N;
+        double square = 0;
+        for (int k = 0; k < N; k++) square += way[k] * way[k];
+        for (int k = 0; k < N && square > 0; k++) moved[k] += m->sign[j] * (least - inside) * way[k] / square;
+    }
+    return at;
+}
+
 static void rates(const Given *o, Motion *m, double tau, const double *y, double *f) {
     field(y, tau, m->side, o->kept_field, f);
     if (!o->tangents) return;
-    slope(y, tau, m->side, o->kept_slope, m->jacobian);
+    double moved[N];
+    slope(KINKS ? sided(o, m, tau, y, moved) : y, tau, m->side, o->kept_slope, m->jacobian);
     for (int t = 1; t <= o->tangents; t++)
         for (int i = 0; i < N; i++) {
             double sum = 0;

@@ -42,6 +42,7 @@ def source(field: VectorField, surfaces: Sequence[Surface]) -> str:
         "SURFACES": len(surfaces),
         "SENSITIVITY": field.sensitivity,
         "SIDES": e.sided.side.numel(),
+        "KINKS": sum(s.kind == Kind.KINK and s.column is None for s in surfaces),
         **{f"KEPT_{name.upper()}": each.kept for name, each in made.items()},
         "KEPT_RESET": sum(each.kept for each in mapped.values()),
         "KEPT_RESET_SLOPE": sum(each.kept for each in sloped.values()),
