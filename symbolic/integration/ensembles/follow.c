@@ -12,7 +12,7 @@ enum { PLUS = 1, STUCK = 2 };
 enum { FOLLOWED, SPENT, DIVERGED, PILED, LOST };
 enum { STAGES = 12, ROWS = 6, PIVOTS = 1000, ROOTS = 60, GUARDS = 2 * SURFACES + 1, MARKS = 15, CLEAN = 6 };
 
-static const double NOISE = 1e-12, SHARP = 1e-3, BESIDE = 1e-13, LOW = 0.1, TINY = 1e-14, ASIDE = 1e-9;
+static const double NOISE = 1e-12, SHARP = 1e-3, BESIDE = 1e-13, LOW = 0.1, TINY = 1e-14, ASIDE = 1e-9, CLOSE = 0.1;
 static const double STABLE = 6.1; /* of the explicit steps, on the negative axis */
 
 /* Changes of mode that are left to the caller. count < 0: the motion begins. */
@@ -467,6 +467,15 @@ static int sound(const Given *o, const double *y) {
     return largest <= o->largest;
 }
 
+/* Whether a guard has fallen after a step. */
+static int falling(const Given *o, Motion *m, double h, double *g, double *r) {
+    if (!m->count) return 0;
+    look(o, m, m->tau + h, m->next, g, r);
+    for (int j = 0; j < m->count; j++)
+        if (g[j] < floor_of(o, m, j)) return 1;
+    return 0;
+}
+
 /* Follow a motion to a phase. */
 static int followed(const Given *o, Motion *m, double end) {
     const ptrdiff_t begun_steps = m->steps, begun_events = m->events;
@@ -480,7 +489,20 @@ static int followed(const Given *o, Motion *m, double end) {
             entered(o, m);
             m->fresh = 0;
         }
-        const double error = step(o, m, h), order = m->stiff ? 1.0 / ROWS : 1.0 / 8;
+        double error = step(o, m, h);
+        const double order = m->stiff ? 1.0 / ROWS : 1.0 / 8;
+        int first = -1;
+        if (error > 1 && isfinite(error) && falling(o, m, h, g, r)) {
+            /* Beyond a kink the step cannot do. Its inner stages must not be there either: near it, then to it. */
+            double at = h;
+            first = fallen_first(o, m, &at, g, r);
+            if (at > CLOSE * h) {
+                first = -1;
+                at *= 1 - CLOSE;
+            }
+            h = at;
+            error = step(o, m, h);
+        }
         if (!(error <= 1)) {
             m->h = h * (isfinite(error) ? greater(0.2, 0.9 * pow(error, -order)) : 0.1);
             if (m->h < TINY * (1 + fabs(m->tau))) return LOST;
@@ -497,8 +519,8 @@ static int followed(const Given *o, Motion *m, double end) {
         }
         look(o, m, m->tau + h, m->next, g, r);
         double cut = 0;
-        int falls = 0;
-        for (int j = 0; j < m->count; j++) {
+        int falls = first >= 0;
+        for (int j = 0; j < m->count && first < 0; j++) {
             if (g[j] < floor_of(o, m, j)) falls = 1;
             else {
                 const double t = dip(m->g[j], h * m->r[j], g[j], h * r[j], floor_of(o, m, j));
@@ -515,7 +537,7 @@ static int followed(const Given *o, Motion *m, double end) {
         if (falls) {
             double at = h;
             int fallen[GUARDS], count = 0;
-            const int first = fallen_first(o, m, &at, g, r);
+            if (first < 0) first = fallen_first(o, m, &at, g, r);
             if (m->events++ - begun_events > o->most_events) return PILED;
             for (int j = 0; j < m->count; j++)
                 if (j == first || (g[j] <= BESIDE * m->size[j] && r[j] < 0 && m->g[j] > BESIDE * m->size[j]))
