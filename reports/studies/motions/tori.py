@@ -53,6 +53,15 @@ def forced() -> sym.CompiledSystem:
     return sym.compile(sym.Equations(rates, {"x": 0.0, "v": 0.0}, {"eta": 1.4}, frequency="eta"))
 
 
+def rubbing() -> sym.CompiledSystem:
+    """A rotor in a stiff ring with friction, which it touches now and then."""
+    x, y, speed = sym.coordinate("x"), sym.coordinate("y"), sym.parameter("speed", 0.8)
+    model: sym.Model | sym.Part = sym.Mass(x, 1.0) + sym.Mass(y, 1.0)
+    for q in (x, y):
+        model = model + sym.Damper(q, 0.1) + sym.Spring(q, 1.0)
+    return sym.compile(model + sym.Unbalance(x, y, 1.0, 1.0, speed) + sym.Rub(x, y, 25.0, 1.05, 0.1))
+
+
 def tori(tell: Tell) -> Found:
     """Compute the tori and their families."""
     rows: list[dict[str, Any]] = []
@@ -86,12 +95,19 @@ def tori(tell: Tell) -> Found:
     four = per.settled_torus(t4)
     row("T4 at 1.4, free frequency", 1.4 * (1 - four.rotation_number), 0.9965355256)
     row("T4 at 1.4, mean of x^2", average(t4, four, "x", 2), 1.9463176)
+    tell("rub")
+    rub = rubbing()
+    five = per.settled_torus(rub, start={"x": 0.5})
+    row("rub at 0.8, rotation number", five.rotation_number, 0.2952063144343)
+    fast = per.settled_torus(rub, {"speed": 1.0}, start={"x": 0.5})
+    row("rub at 1.0, rotation number", fast.rotation_number, 0.6441887029537)
     seconds = {}
     for name, system, torus, parameter, bounds in (
         ("T1", t1, one, "eta", (0.8, 2.0)),
         ("T2", t2, two, "e", (0.1, 1.25)),
         ("T3", rotor, three, "n", (1.6, 2.4)),
-        ("T4", t4, four, "eta", (1.3, 1.45)),
+        ("T4", t4, four, "eta", (1.0, 1.45)),
+        ("rub", rub, five, "speed", (0.725, 1.1)),
     ):
         tell(f"{name}, its family")
         begun = time.perf_counter()
@@ -105,6 +121,8 @@ def tori(tell: Tell) -> Found:
                 "found": float(len(family)),
                 "known": math.nan,
                 "folds": len(family.labelled("LP")),
+                "others": [point.label for point in family if point.label in ("BP", "PD", "NS")],
+                "stops": list(family.stops),
                 "seconds": seconds[name],
             }
         )
@@ -126,7 +144,17 @@ def _context(kept: Kept) -> Mapping[str, Any]:
             [r["what"], f"{r['found']:.12g}", f"{r['known']:.12g}", f"{abs(r['found'] / r['known'] - 1):.0e}"]
             for r in known
         ],
-        "families": [[r["what"], int(r["found"]), r["folds"], f"{r['seconds']:.1f}"] for r in families],
+        "families": [
+            [
+                r["what"],
+                int(r["found"]),
+                r["folds"],
+                " ".join(r["others"]),
+                "; ".join(r["stops"]),
+                f"{r['seconds']:.1f}",
+            ]
+            for r in families
+        ],
     }
 
 

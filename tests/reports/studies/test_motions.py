@@ -68,7 +68,8 @@ def test_tori_are_fresh() -> None:
     rows = {row["what"]: row["found"] for row in kept.rows}
     assert torus.frequencies[0] == pytest.approx(rows["T2 at 0.5, a frequency"], rel=1e-9)
     families = [row for row in kept.rows if math.isnan(row["known"])]
-    assert [row["folds"] for row in families] == [4, 0, 0, 0]
+    assert [row["folds"] for row in families] == [4, 0, 0, 0, 0]
+    assert [row["others"] for row in families] == [["PD"] * 4, [], [], [], []]
 
 
 def test_basins_are_fresh() -> None:
