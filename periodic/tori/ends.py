@@ -108,7 +108,7 @@ def lost(torus: Section) -> str:
     return f"Newton's method finds no torus beyond, with a rotation number of {torus.rotation_number:.9g}"
 
 
-def rough(torus: Section) -> str:
+def rough_in_words(torus: Section) -> str:
     """Return that a torus cannot be resolved, in words."""
     return (
         f"the torus loses its smoothness: its highest harmonics are {torus.tail:.0e} of the largest with "

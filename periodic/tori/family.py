@@ -82,7 +82,7 @@ class Family:
                 break
             now, count = found[0], len(found[0].states)
             breaks = breaks_of(self.equations.system, now)
-            if not moved(now.breaks, breaks):
+            if len(breaks) == len(now.breaks) and now.tail > self.rough:
                 if count >= MOST_ANGLES:
                     break
                 count = 2 * count - 1

@@ -21,6 +21,7 @@ from periodic.phasespace.values import parameters
 from periodic.system import System, check_system
 from periodic.system.ensembles import FOLLOWED
 from periodic.tori.born import check_angles
+from periodic.tori.ends import rough_in_words
 from periodic.tori.family import family_of
 from periodic.tori.grid import FEWEST, TURN, Grid
 from periodic.tori.section import TorusError
@@ -46,6 +47,9 @@ SAMPLES, MANY = 4096, 65536
 
 NEAR = 0.05
 """Part of its size by which a first torus may miss the motion: Newton's method does the rest."""
+
+ROUGHEST = 1e-3
+"""Tail beyond which a result would be none."""
 
 GOOD = 1e-2
 """... and by which the first of several that fit, with the fewest harmonics, is taken."""
@@ -95,7 +99,7 @@ def settled_torus(
     ValueError
         For names and numbers that are not allowed.
     TorusError
-        Where the motion is not quasi-periodic, or no torus is found near it.
+        Where the motion is not quasi-periodic, no torus is found near it, or it cannot be resolved.
     """
     check_system(system)
     check_angles(angles)
@@ -116,6 +120,11 @@ def settled_torus(
         raise TorusError(
             f"no torus is found near the motion, whose rotation number is about {guess.rotation_number:.6g}; "
             f"another number of angles or a longer settle may lead to one"
+        )
+    if refined[0].tail > ROUGHEST:
+        raise TorusError(
+            f"{rough_in_words(refined[0])}; motions that just touch something make it so, or an orbit nearby "
+            f"on which it locks"
         )
     return cast(Torus, refined[0])
 

@@ -117,7 +117,8 @@ def _eigenvalues(system: System, torus: Section) -> tuple[Array, Array]:
     even = grid.interpolation(Grid(count).angles)[0]
     shapes = np.einsum("jk,kas->jas", even, vectors.reshape(count, n, -1))
     harmonics = np.abs(np.fft.fft(shapes, axis=0)) ** 2
-    harmonics = harmonics.sum(axis=1) / harmonics.sum(axis=(0, 1))
+    harmonics = harmonics.sum(axis=1)
+    harmonics = harmonics / np.maximum(harmonics.sum(axis=0), np.finfo(float).tiny)
     orders = np.fft.fftfreq(count, 1 / count)
     rough = np.abs(orders) @ harmonics
     smooth = np.argsort(rough, kind="stable")[: max(n, int(SMOOTH * count) * n)]

@@ -14,7 +14,7 @@ from periodic.orbit.scheme import Array
 from periodic.phasespace.values import parameters
 from periodic.results.point import Point
 from periodic.system import System, check_system, index_of
-from periodic.tori.ends import born, locked, lost, orbits_beyond, passed, resonance, rough
+from periodic.tori.ends import born, locked, lost, orbits_beyond, passed, resonance, rough_in_words
 from periodic.tori.family import Family, family_of
 from periodic.tori.invariance import Unknowns
 from periodic.tori.section import Section, TorusError
@@ -199,7 +199,7 @@ class OneWay:
                 if finer is None or finer[0].tail > self.family.rough:
                     yield replace(after, label="EP")
                     last = after.torus if finer is None else finer[0]
-                    self._end(last, ahead[-1], rough(last))
+                    self._end(last, ahead[-1], rough_in_words(last))
                     return
                 after, ahead = self._one(finer[0], ""), finer[1] * np.sign(ahead[-1])
             yield after
