@@ -16,6 +16,9 @@ LONGEST = 0.25
 RESTS = 1e-9
 """Step at an equilibrium, in widths of the box."""
 
+HELD = 1e-6
+"""Residual there, in what it changes by over the widths of the box."""
+
 
 def at_rest(
     system: System, parameter: Array, x: Array, unit: Array, phases: Array
@@ -32,9 +35,14 @@ def at_rest(
         residual, slope = _mean(system, parameter, x, z, phases)
         good = np.isfinite(slope).all(axis=(1, 2)) & np.isfinite(residual).all(axis=1)
         x, z, slope, residual = x[good], z[good], slope[good], residual[good]
-        step = -np.einsum("sij,sj->si", np.linalg.pinv(slope, rcond=1e-13), residual)
-        size = np.abs(step[:, :n] / unit).max(axis=1)
-        there = size < RESTS
+        with np.errstate(over="ignore", invalid="ignore"):  # a slope of hardly any size
+            step = -np.einsum("sij,sj->si", np.linalg.pinv(slope, rcond=1e-13), residual)
+        good = np.isfinite(step).all(axis=1)
+        x, z, step, slope, residual = x[good], z[good], step[good], slope[good], residual[good]
+        size = np.abs(step[:, :n] / unit).max(axis=1, initial=0.0)
+        units = np.append(unit, np.ones(slope.shape[2] - n))
+        held = np.abs(residual) <= HELD * np.maximum(np.abs(slope) @ units, np.finfo(float).tiny)
+        there = (size < RESTS) & held.all(axis=1)
         for state, unknowns in zip(x[there], z[there], strict=True):
             if all(np.abs((state - other) / unit).max() > np.sqrt(RESTS) for other, _ in found):
                 found.append((state, unknowns))

@@ -69,7 +69,7 @@ class TorusBranch(Sequence[TorusPoint]):
     released : str
         The parameter that changes so that the rotation number stays, "" for none.
     orbits : tuple of Point
-        The orbits of some periods of the excitation on which the motion locks beyond its ends.
+        The orbits of some periods of the excitation on which the motion locks, beyond ends and on the way.
     """
 
     parameter: str

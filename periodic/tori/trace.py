@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 
 import numpy as np
 
@@ -25,8 +26,8 @@ from periodic.tori.torusbranch import TorusBranch, TorusPoint
 FIRST, LONGEST, SHORTEST = 0.02, 0.1, 1e-6
 """Steps along the family: the first, the longest and the shortest, in ranges of the parameter."""
 
-LONGER, SHORTER = 1.4, 0.4
-"""Factors of a step after one that succeeded, and one that failed."""
+LONGER, SHORTER, FARTHER = 1.4, 0.4, 2.0
+"""Factors of a step after one that succeeded, and one that failed; of one over a resonance."""
 
 BENDS = 0.3
 """Largest turn (rad) of the direction in a step."""
@@ -152,7 +153,7 @@ class OneWay:
     """One way along a family, within bounds of the parameter (scaled).
 
     stop: why it ended. lost: what lies between two of its tori and is not among them. orbits: on which it
-    locks.
+    locks. tried: the ratios over which it was tried to pass.
     """
 
     family: Family
@@ -164,6 +165,7 @@ class OneWay:
     stop: str = field(default="", init=False)
     lost: list[str] = field(default_factory=list, init=False)
     orbits: tuple[Point, ...] = field(default=(), init=False)
+    tried: set[Fraction] = field(default_factory=set, init=False)
 
     @property
     def told(self) -> str:
@@ -175,15 +177,19 @@ class OneWay:
         now, length, largest = self._one(first, ""), FIRST, first.size
         path = [(now, tangent)]
         for _ in range(whole("max_points", self.most)):
-            step = self._step(now, tangent, length)
+            step, finer = self._step(now, tangent, length), None
+            if step is not None and (step.folds or step.after.torus.tail > self.family.rough):
+                step = self._over(path, step.after.torus) or step
+            if step is not None and not self.family.resolved(step.after.torus):
+                finer = self.family.refined(step.after.torus)
+                step = None if finer is None else step
             if step is None:
                 length *= SHORTER
-                if length < SHORTEST:
+                if length < SHORTEST and (step := self._over(path, now.torus)) is None:
                     self._end(now.torus, tangent[-1], lost(now.torus))
                     return
+            if step is None:
                 continue
-            if step.folds or step.after.torus.tail > self.family.rough:
-                step = self._over(path, step) or step
             after, ahead, length = step.after, step.ahead, step.length
             yield from self._within(step, now.torus)
             if self.stop:
@@ -194,12 +200,10 @@ class OneWay:
                 at = born(self.family, now.torus, after.torus) * self.scale
                 self.stop = f"the torus shrinks to an orbit, a torus bifurcation (NS) near {at:.9g}"
                 return
-            if not self.family.resolved(after.torus):
-                finer = self.family.refined(after.torus)
-                if finer is None or finer[0].tail > self.family.rough:
+            if finer is not None:
+                if finer[0].tail > self.family.rough:
                     yield replace(after, label="EP")
-                    last = after.torus if finer is None else finer[0]
-                    self._end(last, ahead[-1], rough_in_words(last))
+                    self._end(finer[0], ahead[-1], rough_in_words(finer[0]))
                     return
                 after, ahead = self._one(finer[0], ""), finer[1] * np.sign(ahead[-1])
             yield after
@@ -217,23 +221,22 @@ class OneWay:
             return None
         return Step(self.family, now, self._one(found[0], ""), tangent, found[1], length)
 
-    def _over(self, path: list[tuple[TorusPoint, Array]], rough: Step) -> Step | None:
-        """A step over a narrow resonance that one has come to, from a smooth torus before; None without one.
+    def _over(self, path: list[tuple[TorusPoint, Array]], last: Section) -> Step | None:
+        """A step over a resonance that a torus has come to, from a smooth one before; None without one.
 
         Newton's method is held at values of the parameter beyond: tangents near a resonance lead nowhere.
         """
-        near = resonance(rough.after.torus)
-        count = len(rough.after.torus.states)
+        near, count = resonance(last), len(last.states)
         before = [each for each in path[-BACK:] if len(each[0].torus.states) == count]
-        if near is None or not before:
+        if near is None or near in self.tried or not before:
             return None
-        start, tangent = min(before, key=lambda each: each[0].torus.tail)
-        begin = value_of(self.family, start.torus)
-        way, away = float(np.sign(tangent[-1])), value_of(self.family, rough.after.torus) - begin
-        length = max(way * away, SHORTEST * self.family.equations.scale)
-        while length < LONGEST * self.family.equations.scale:
-            length *= LONGER
-            found = self.family.directed(start.torus, begin + way * length)
+        self.tried.add(near)
+        smooth = [each for each in before if each[0].torus.tail <= CALM * self.family.rough]
+        start, tangent = smooth[-1] if smooth else min(before, key=lambda each: each[0].torus.tail)
+        way, beyond = float(np.sign(tangent[-1])), SHORTEST * self.family.equations.scale
+        while beyond < LONGEST * self.family.equations.scale:
+            beyond *= FARTHER
+            found = self.family.directed(start.torus, value_of(self.family, last) + way * beyond)
             if found is None or found[0].tail > CALM * self.family.rough:
                 continue
             after = self._one(found[0], "")
@@ -243,6 +246,8 @@ class OneWay:
             if further is not None and way * (further.after.parameter - after.parameter) > 0:
                 ends = sorted((start.parameter, after.parameter))
                 self.lost.append(f"it locks at {near} somewhere between {ends[0]:.9g} and {ends[1]:.9g}")
+                if not last.free:
+                    self.orbits += orbits_beyond(self.family, last, near.denominator, way)
                 path.clear()
                 return Step(self.family, start, after, tangent, way * found[1], FIRST)
         return None
