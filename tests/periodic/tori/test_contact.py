@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 import scipy
 from support.kept import kept
+from support.oscillators import X
 
 import periodic as per
 import symbolic as sym
 from periodic.phasespace.crowd import Crowd
+from periodic.tori import settled
 from periodic.tori.grid import TURN, Grid
 
 pytestmark = pytest.mark.usefixtures("users_kernels")
@@ -128,3 +131,44 @@ def test_grids() -> None:
     kinked = np.abs(np.mod(grid.angles - 2.1, TURN) - (5.0 - 2.1))
     assert value @ kinked == pytest.approx(np.abs(np.mod(at - 2.1, TURN) - (5.0 - 2.1)), abs=1e-10)
     assert grid.tail(kinked[:, None]) < 1e-12
+
+
+def with_two_forces(part: sym.Part) -> sym.CompiledSystem:
+    """A mass with forces of frequencies 1 to sqrt(2), and more: the second turns as two states."""
+
+    def turning(s: Any, p: Any, wave: Any) -> dict[str, Any]:
+        left, turns = 1 - s.p**2 - s.q**2, math.sqrt(2) * p.Omega
+        return {"p": left * s.p - turns * s.q, "q": left * s.q + turns * s.p, "x": 0.6 * s.p}
+
+    second = sym.Equations(
+        turning, states={"p": 1.0, "q": 0.0}, coordinates=[X], parameters={"Omega": 0.7}, frequency="Omega"
+    )
+    model = sym.Mass(X, 1.0) + sym.Damper(X, 0.1) + sym.Spring(X, 1.0)
+    return sym.compile(model + sym.HarmonicForce(X, 1.0, sym.parameter("Omega", 0.7)) + part + second)
+
+
+def test_friction_beside_two_forces() -> None:
+    """Assert thirty periods on a torus with friction against a motion that was integrated event by event."""
+    system = with_two_forces(sym.CoulombFriction(X, 0.2))
+    torus = per.settled_torus(system, settle=2000)
+    assert len(torus.breaks) == 6 and torus.tail < 1e-7
+    assert torus.rotation_number == pytest.approx(math.sqrt(2) - 1, rel=1e-7)
+    _, states = per.tori.in_time(system, torus, periods=30, samples=8)
+    begin, phase = torus.states_at(np.zeros(1))[0], TURN / 8 * np.arange(240)
+    path = system.motion(begin, np.zeros(0), torus.parameter, phase, 1e-11)
+    assert states["x"] == pytest.approx(torus.units["x"] * path.state[:, 0], abs=3e-7)
+
+
+def test_what_just_touches_now_and_then_is_rough(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that the tail is the error where not all beats reach a stop, and that rougher ones are refused."""
+    system = with_two_forces(sym.OneSidedSpring(X, 5.0, 0.8))
+    torus = per.settled_torus(system, settle=2000)
+    assert len(torus.states) == 641 and 1e-5 < torus.tail < 1e-3
+    _, states = per.tori.in_time(system, torus, periods=30, samples=8)
+    begin, phase = torus.states_at(np.zeros(1))[0], TURN / 8 * np.arange(240)
+    path = system.motion(begin, np.zeros(0), torus.parameter, phase, 1e-11)
+    off = np.abs(states["x"] - torus.units["x"] * path.state[:, 0]).max() / np.abs(path.state[:, 0]).max()
+    assert 1e-6 < off < 5 * torus.tail
+    monkeypatch.setattr(settled, "ROUGHEST", 1e-5)
+    with pytest.raises(per.TorusError, match=r"loses its smoothness.*motions that just touch something"):
+        per.settled_torus(system, settle=2000)
