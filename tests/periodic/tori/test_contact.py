@@ -160,7 +160,7 @@ def test_friction_beside_two_forces() -> None:
 
 
 def test_what_just_touches_now_and_then_is_rough(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Assert that the tail is the error where not all beats reach a stop, and that rougher ones are refused."""
+    """Assert that the tail is the error where not all beats reach a stop; rougher ones are refused."""
     system = with_two_forces(sym.OneSidedSpring(X, 5.0, 0.8))
     torus = per.settled_torus(system, settle=2000)
     assert len(torus.states) == 641 and 1e-5 < torus.tail < 1e-3
