@@ -58,7 +58,6 @@ def _mean(system: System, parameter: Array, x: Array, z: Array, phases: Array) -
     tau = np.tile(phases, len(x))
     line = system.linearise(np.zeros_like(many), many, np.repeat(z, count, axis=0), tau, parameter)
     slope = np.concatenate([line.d_state, line.d_algebraic], axis=2)
-    shape = len(x), count
-    return line.residual.reshape(*shape, -1).mean(axis=1), slope.reshape(*shape, *slope.shape[1:]).mean(
-        axis=1
-    )
+    each = (values.reshape(len(x), count, *values.shape[1:]) for values in (line.residual, slope))
+    residual, slope = (values.mean(axis=1) for values in each)
+    return residual, slope

@@ -39,10 +39,7 @@ class Symmetry:
 
     def image(self, crowd: Crowd, states: Array) -> Array:
         """Return the images (K, n) of states at phase 0; NaN of those that cannot be followed."""
-        ahead = states
-        if self.shift:
-            found = crowd.run(crowd.begin(states), 1, self.shift)
-            ahead = np.where(found.outcome[:, None] == FOLLOWED, found.ends[:, : states.shape[1]], np.nan)
+        ahead = _ahead(crowd, states, self.shift) if self.shift else states
         return np.asarray(ahead @ self.matrix.T)
 
     def holds(self, crowd: Crowd, states: Array, ends: Array, width: Array) -> bool:
@@ -50,7 +47,7 @@ class Symmetry:
         once = self.image(crowd, states)
         if self.shift:
             return bool((np.abs(self.image(crowd, once) - ends) < SAME * width).all())
-        return bool((np.abs(_mapped(crowd, once) - ends @ self.matrix.T) < SAME * width).all())
+        return bool((np.abs(_ahead(crowd, once, FORCED) - ends @ self.matrix.T) < SAME * width).all())
 
 
 def symmetries_of(crowd: Crowd, box: Box, seed: int, excited: bool) -> tuple[Symmetry, ...]:
@@ -60,7 +57,7 @@ def symmetries_of(crowd: Crowd, box: Box, seed: int, excited: bool) -> tuple[Sym
     """
     crowd = replace(crowd, tolerance=FINE)
     states = box.draw(POINTS, seed, crowd.system, crowd.parameter)
-    ends = _mapped(crowd, states)
+    ends = _ahead(crowd, states, FORCED)
     known = np.isfinite(ends).all(axis=1)
     states, ends = states[known], ends[known]
     if not len(states):
@@ -105,7 +102,7 @@ def _told(names: list[str], order: tuple[int, ...], signs: tuple[int, ...]) -> s
     return ", ".join(f"{name} -> {of}" for name, of in other if name != of)
 
 
-def _mapped(crowd: Crowd, states: Array) -> Array:
-    """States a period later, (K, n); NaN of those that cannot be followed."""
-    found = crowd.run(crowd.begin(states), 1, FORCED)
+def _ahead(crowd: Crowd, states: Array, stretch: float) -> Array:
+    """States a stretch later, (K, n); NaN of those that cannot be followed."""
+    found = crowd.run(crowd.begin(states), 1, stretch)
     return np.where(found.outcome[:, None] == FOLLOWED, found.ends[:, : states.shape[1]], np.nan)

@@ -107,10 +107,8 @@ def in_time(
     TorusError
         Where the motion cannot be followed.
     """
-    crowd, count = (
-        Crowd(system, torus.parameter, FINE),
-        whole("periods", periods) * whole("samples", samples, 2),
-    )
+    crowd = Crowd(system, torus.parameter, FINE)
+    count = whole("periods", periods) * whole("samples", samples, 2)
     angles = torus.rotation * np.arange(float(periods))
     starts = torus.states_at(angles)
     found = crowd.run(crowd.begin(starts), samples, torus.period / samples, keep=True)

@@ -13,6 +13,7 @@ from periodic.orbit.scheme import Array
 from periodic.results.plots.frame import dressed, fresh
 from periodic.system import System
 from periodic.tori.averages import SAMPLES, surface
+from periodic.tori.family import resampled
 from periodic.tori.section import Section
 
 if TYPE_CHECKING:
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
 
 LINES = 40
 """Lines that are given."""
+
+DENSER = 4
+"""Equispaced angles at which a section in pieces is taken, for each of its own."""
 
 NAMED = 6
 """Lines that a picture names."""
@@ -68,9 +72,8 @@ class Combinations:
         least = float(self.amplitudes[self.amplitudes > 0].min())
         axes.vlines(self.frequencies, least / 2, np.maximum(self.amplitudes, least), color="C0")
         axes.set_yscale("log")
-        for (k, j), at, size in list(zip(self.orders, self.frequencies, self.amplitudes, strict=True))[
-            :NAMED
-        ]:
+        strongest = zip(self.orders[:NAMED], self.frequencies, self.amplitudes, strict=False)
+        for (k, j), at, size in strongest:
             axes.annotate(f"{k}, {j}", (at, size), (0, 3), textcoords="offset points", ha="center")
         axes.set_ylim(least / 2, 3 * self.amplitudes.max())
         return dressed(axes, "frequency (rad/s)", with_unit(f"amplitude of {self.name}", self.unit))
@@ -111,7 +114,8 @@ def combinations(
     """
     one_of("name", name, [q.name for q in torus.layout.states])
     column = torus.layout.column(name)
-    states = torus.units[name] * surface(system, torus, whole("samples", samples, 2))[:, :-1, column.index]
+    even = torus if not len(torus.breaks) else resampled(torus, DENSER * len(torus.states) + 1, np.zeros(0))
+    states = torus.units[name] * surface(system, even, whole("samples", samples, 2))[:, :-1, column.index]
     count = len(states)
     own = np.fft.fftfreq(count, 1 / count)
     along = np.fft.fft(states, axis=0) / count

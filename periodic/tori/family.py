@@ -70,12 +70,22 @@ class Family:
         share = (value / self.equations.scale - low[-1]) / (high[-1] - low[-1])
         return self.held(unknowns.torus(low + share * (high - low)), value, after)
 
+    def value(self, torus: Section) -> float:
+        """Return the parameter (scaled) of a torus."""
+        return float(torus.parameter[self.equations.free])
+
+    def birth(self, before: Section, after: Section) -> float:
+        """Return where a torus that shrinks has no size, by its square, which grows linearly from there."""
+        low, high = self.value(before), self.value(after)
+        a, b = before.size**2, after.size**2
+        return high + (high - low) * b / (a - b)
+
     def refined(self, torus: Section) -> tuple[Section, Array] | None:
         """Return a torus with as many angles as it needs, and the tangent: see `directed`.
 
         None where that fails.
         """
-        value = float(torus.parameter[self.equations.free])
+        value = self.value(torus)
         found = self.directed(torus, value)
         for _ in range(ROUNDS):
             if found is None or self.resolved(found[0]):
@@ -98,6 +108,14 @@ class Family:
 def resampled(torus: Section, count: int, breaks: Array) -> Section:
     """Return a torus with another number of angles, or other breaks."""
     return replace(torus, states=torus.states_at(Grid(count, breaks).angles), breaks=breaks)
+
+
+def not_resolved(torus: Section) -> str:
+    """Return that a torus cannot be resolved, in words."""
+    return (
+        f"the torus loses its smoothness: its highest harmonics are {torus.tail:.0e} of the largest with "
+        f"{len(torus.states)} angles, and {MOST_ANGLES} are not enough"
+    )
 
 
 def family_of(

@@ -21,8 +21,7 @@ from periodic.phasespace.values import parameters
 from periodic.system import System, check_system
 from periodic.system.ensembles import FOLLOWED
 from periodic.tori.born import check_angles
-from periodic.tori.ends import rough_in_words
-from periodic.tori.family import family_of
+from periodic.tori.family import family_of, not_resolved
 from periodic.tori.grid import FEWEST, TURN, Grid
 from periodic.tori.section import TorusError
 from periodic.tori.torus import Torus
@@ -123,7 +122,7 @@ def settled_torus(
         )
     if refined[0].tail > ROUGHEST:
         raise TorusError(
-            f"{rough_in_words(refined[0])}; motions that just touch something make it so, or an orbit nearby "
+            f"{not_resolved(refined[0])}; motions that just touch something make it so, or an orbit nearby "
             f"on which it locks"
         )
     return cast(Torus, refined[0])

@@ -89,8 +89,9 @@ def _spectrum(system: System, torus: Section) -> tuple[Array, Array]:
     values, means = _eigenvalues(system, torus)
     order = np.argsort(-np.abs(values), kind="stable")
     values, means = values[order], means[order]
-    sizes = np.array([np.median(np.abs(group)) for group in np.array_split(values, n)])
-    ends = [0, *np.cumsum([len(group) for group in np.array_split(values, n)])]
+    groups = np.array_split(values, n)
+    sizes = np.array([np.median(np.abs(group)) for group in groups])
+    ends = [0, *np.cumsum([len(group) for group in groups])]
     found, halves, k = np.zeros(n, dtype=complex), np.zeros(n, dtype=bool), 0
     while k < n:
         alike = k + 1
@@ -108,7 +109,7 @@ def _spectrum(system: System, torus: Section) -> tuple[Array, Array]:
 def _eigenvalues(system: System, torus: Section) -> tuple[Array, Array]:
     """The eigenvalues of L whose vectors are smooth, and the mean of each vector's harmonics."""
     count, n = torus.states.shape
-    grid = torus.grid if count * n <= MOST else Grid(MOST // n // 2 * 2 - 1)
+    grid = torus.grid if count * n <= MOST else Grid(MOST // n // 2 * 2 - 1, torus.breaks)
     count = grid.count
     slopes = Invariance(system, 0, FINE).mapped(torus, torus.states_at(grid.angles - torus.rotation))[1]
     back = grid.interpolation(grid.angles - torus.rotation)[0]

@@ -21,7 +21,6 @@ from periodic.tori.torusbranch import TorusPoint
 CROSSED = 1e-10
 """Part of a step to which folds and multipliers on the unit circle are located."""
 
-
 ALONG = 0.8
 """Cosine of the largest angle between the tangents of a step: beyond, another family was found."""
 
@@ -95,8 +94,9 @@ class Step:
                 values[length] = function(*known[length])
             return values[length]
 
-        with contextlib.suppress(ArithmeticError, ValueError):
-            scipy.optimize.brentq(off, 0.0, self.length, xtol=CROSSED * self.length)
+        if values[0.0] * values[self.length] < 0:
+            with contextlib.suppress(ArithmeticError):  # then the nearest is given, and how near it is
+                scipy.optimize.brentq(off, 0.0, self.length, xtol=CROSSED * self.length)
         nearest = min(values, key=lambda length: abs(values[length]))
         return Located(known[nearest][0], abs(values[nearest]))
 
@@ -125,11 +125,6 @@ class Step:
 
     def _away(self, torus: Section) -> Array:
         return self._unknowns.of(torus) - self._unknowns.of(self.now.torus)
-
-
-def value_of(family: Family, torus: Section) -> float:
-    """Return the parameter (scaled) of a torus of a family."""
-    return float(torus.parameter[family.equations.free])
 
 
 def _logs(found: Array, free: bool) -> Array:

@@ -15,12 +15,12 @@ from periodic.orbit.scheme import Array
 from periodic.phasespace.values import parameters
 from periodic.results.point import Point
 from periodic.system import System, check_system, index_of
-from periodic.tori.ends import born, locked, lost, orbits_beyond, passed, resonance, rough_in_words
-from periodic.tori.family import Family, family_of
+from periodic.tori.family import Family, family_of, not_resolved
 from periodic.tori.invariance import Unknowns
+from periodic.tori.locking import kinds, orbits_beyond, passed, resonance
 from periodic.tori.section import Section, TorusError
 from periodic.tori.stability import stable, torus_multipliers
-from periodic.tori.step import Located, Step, value_of
+from periodic.tori.step import Located, Step
 from periodic.tori.torusbranch import TorusBranch, TorusPoint
 
 FIRST, LONGEST, SHORTEST = 0.02, 0.1, 1e-6
@@ -177,39 +177,50 @@ class OneWay:
         now, length, largest = self._one(first, ""), FIRST, first.size
         path = [(now, tangent)]
         for _ in range(whole("max_points", self.most)):
-            step, finer = self._step(now, tangent, length), None
-            if step is not None and (step.folds or step.after.torus.tail > self.family.rough):
-                step = self._over(path, step.after.torus) or step
-            if step is not None and not self.family.resolved(step.after.torus):
-                finer = self.family.refined(step.after.torus)
-                step = None if finer is None else step
-            if step is None:
+            taken = self._resolved(self._step(now, tangent, length), path)
+            if taken is None:
                 length *= SHORTER
-                if length < SHORTEST and (step := self._over(path, now.torus)) is None:
-                    self._end(now.torus, tangent[-1], lost(now.torus))
-                    return
-            if step is None:
-                continue
-            after, ahead, length = step.after, step.ahead, step.length
+                if length >= SHORTEST:
+                    continue
+                taken = self._resolved(self._over(path, now.torus), path)
+            if taken is None:
+                told = f"with a rotation number of {now.torus.rotation_number:.9g}"
+                self._end(now.torus, tangent[-1], f"Newton's method finds no torus beyond, {told}")
+                return
+            step, after, ahead = taken
             yield from self._within(step, now.torus)
             if self.stop:
                 return
             largest = max(largest, after.torus.size)
             if after.torus.size < BORN * largest and after.torus.size < now.torus.size:
                 yield replace(after, label="EP")
-                at = born(self.family, now.torus, after.torus) * self.scale
+                at = self.family.birth(now.torus, after.torus) * self.scale
                 self.stop = f"the torus shrinks to an orbit, a torus bifurcation (NS) near {at:.9g}"
                 return
-            if finer is not None:
-                if finer[0].tail > self.family.rough:
-                    yield replace(after, label="EP")
-                    self._end(finer[0], ahead[-1], rough_in_words(finer[0]))
-                    return
-                after, ahead = self._one(finer[0], ""), finer[1] * np.sign(ahead[-1])
+            if after.torus.tail > self.family.rough:
+                yield replace(after, label="EP")
+                self._end(after.torus, ahead[-1], not_resolved(after.torus))
+                return
             yield after
-            now, tangent, length = after, ahead, min(LONGER * length, LONGEST)
+            now, tangent, length = after, ahead, min(LONGER * step.length, LONGEST)
             path.append((now, tangent))
         self.stop = f"{self.most} tori, as many as were asked for"
+
+    def _resolved(
+        self, step: Step | None, path: list[tuple[TorusPoint, Array]]
+    ) -> tuple[Step, TorusPoint, Array] | None:
+        """A step, or one over a resonance it has come to, with its torus refined and the tangent there.
+
+        None where one of them fails.
+        """
+        if step is None:
+            return None
+        if step.folds or step.after.torus.tail > self.family.rough:
+            step = self._over(path, step.after.torus) or step
+        if self.family.resolved(step.after.torus):
+            return step, step.after, step.ahead
+        finer = self.family.refined(step.after.torus)
+        return finer and (step, self._one(finer[0], ""), finer[1] * np.sign(step.ahead[-1]))
 
     def _step(self, now: TorusPoint, tangent: Array, length: float) -> Step | None:
         """A step along the family; None where it fails, or turns too far."""
@@ -236,7 +247,7 @@ class OneWay:
         way, beyond = float(np.sign(tangent[-1])), SHORTEST * self.family.equations.scale
         while beyond < LONGEST * self.family.equations.scale:
             beyond *= FARTHER
-            found = self.family.directed(start.torus, value_of(self.family, last) + way * beyond)
+            found = self.family.directed(start.torus, self.family.value(last) + way * beyond)
             if found is None or found[0].tail > CALM * self.family.rough:
                 continue
             after = self._one(found[0], "")
@@ -244,21 +255,21 @@ class OneWay:
                 continue
             further = self._step(after, way * found[1], FIRST)
             if further is not None and way * (further.after.parameter - after.parameter) > 0:
-                ends = sorted((start.parameter, after.parameter))
-                self.lost.append(f"it locks at {near} somewhere between {ends[0]:.9g} and {ends[1]:.9g}")
-                if not last.free:
-                    self.orbits += orbits_beyond(self.family, last, near.denominator, way)
+                low, high = sorted((start.parameter, after.parameter))
+                orbits = self._locked(last, near, way)
+                told = f"it locks at {near}" if orbits else f"a rotation number of {near} was passed over"
+                self.lost.append(f"{told} somewhere between {low:.9g} and {high:.9g}")
                 path.clear()
                 return Step(self.family, start, after, tangent, way * found[1], FIRST)
         return None
 
     def _inside(self, point: TorusPoint) -> bool:
         """Whether a torus is within the bounds."""
-        return self.bounds[0] < value_of(self.family, point.torus) < self.bounds[1]
+        return self.bounds[0] < self.family.value(point.torus) < self.bounds[1]
 
     def _within(self, step: Step, last: Section) -> Iterator[TorusPoint]:
         """Yield what a step has beyond a last torus: special points, values asked for, the range's end."""
-        a, b = value_of(self.family, step.now.torus), value_of(self.family, step.after.torus)
+        a, b = self.family.value(step.now.torus), self.family.value(step.after.torus)
         found: list[tuple[Located, str, float]] = []
         if step.folds:
             found.append((step.fold(), "LP", b))
@@ -287,27 +298,38 @@ class OneWay:
         if located.torus is None:
             return f"no torus {label} was found near {value * self.scale:.9g}"
         return (
-            f"the torus {label} near {value_of(self.family, located.torus) * self.scale:.9g} was located to "
+            f"the torus {label} near {self.family.value(located.torus) * self.scale:.9g} was located to "
             f"{located.off:.0e} only: another family passes there"
         )
 
     def _one(self, torus: Section, label: str) -> TorusPoint:
-        return _point(self.family, torus, value_of(self.family, torus) * self.scale, label)
+        return _point(self.family, torus, self.family.value(torus) * self.scale, label)
 
     def _end(self, last: Section, way: float, otherwise: str) -> None:
         """Write down how the family ends at a torus: it locks, or otherwise."""
         near = resonance(last)
+        orbits = () if near is None else self._locked(last, near, way)
         if near is None or last.free:
             self.stop = otherwise
-            return
-        self.orbits = orbits_beyond(self.family, last, near.denominator, way)
-        self.stop = locked(last, near, self.orbits)
+        elif not orbits:
+            self.stop = f"{otherwise}; that is near {near}, where no orbit of as many periods was found"
+        else:
+            self.stop = (
+                f"the motion locks: the rotation number {last.rotation_number:.9g} is near {near}; beyond "
+                f"there are {kinds(orbits)} orbits of {near.denominator} periods"
+            )
+
+    def _locked(self, last: Section, near: Fraction, way: float) -> tuple[Point, ...]:
+        """Add the orbits on which a motion of an excited system locks at a ratio, and return them."""
+        orbits = () if last.free else orbits_beyond(self.family, last, near.denominator, way)
+        self.orbits += orbits
+        return orbits
 
 
 def through(before: Section, after: Section) -> bool:
     """Return whether a torus has shrunk to an orbit between two, and grown again on the other side of it."""
-    one, other = (torus.states - torus.states.mean(axis=0) for torus in (before, after))
-    return bool((one * other).sum() < 0)
+    one, other = (torus.states - torus.grid.weights @ torus.states for torus in (before, after))
+    return bool(before.grid.weights @ (one * other).sum(axis=1) < 0)
 
 
 def _point(family: Family, torus: Section, value: float, label: str) -> TorusPoint:

@@ -117,7 +117,7 @@ def test_narrow_tongue_is_passed_over() -> None:
     """Assert that a locking is told, and that tori go on beyond it to the torus bifurcation of the orbits."""
     family = round_a_tongue()
     told, passed = family.stops[1].split("; ")
-    assert passed.startswith("it locks at 2/7 somewhere between 1.39")
+    assert passed.startswith("a rotation number of 2/7 was passed over somewhere between 1.39")
     branch = per.trace(forced(), "eta", (1.0, 1.4), start=1.0)
     (born,) = branch.labelled("NS")
     assert told.startswith("the torus shrinks to an orbit, a torus bifurcation (NS) near ")

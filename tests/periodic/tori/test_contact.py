@@ -76,6 +76,21 @@ def test_rub_is_a_cycle_in_rotating_coordinates() -> None:
     assert found == pytest.approx(mean, rel=1e-6)
 
 
+def test_lines_of_a_rub() -> None:
+    """Assert Parseval's sum over all lines, and the strongest against a long motion's Fourier sum."""
+    system, torus = rotor(), rubbing()
+    lines = per.tori.combinations(system, torus, "x", lines=4000)
+    mean = lines.amplitudes[(lines.orders == 0).all(axis=1)]
+    power = (lines.amplitudes**2).sum() / 2 + (mean**2).sum() / 2
+    square = per.tori.average(system, torus, lambda s: s["x"] ** 2, samples=512)
+    assert power == pytest.approx(square, rel=1e-8)
+    time, states = per.tori.in_time(system, torus, periods=1000, samples=32)
+    window = np.exp(-1 / np.maximum(1 - np.linspace(-1, 1, len(time)) ** 2, 1e-12))
+    for at, size in zip(lines.frequencies[:4], lines.amplitudes[:4], strict=True):
+        one = 2 * abs(window @ (states["x"] * np.exp(-1j * at * time))) / window.sum()
+        assert one == pytest.approx(size, rel=1e-7)
+
+
 def test_multiplier_along_the_torus() -> None:
     """Assert that the multiplier along the section is 1, and others the exponents of a long motion."""
     sizes = np.abs(per.tori.torus_multipliers(rotor(), rubbing()))

@@ -1,4 +1,4 @@
-"""How families of tori end: they shrink to an orbit, lock to orbits of some periods, or become rough."""
+"""Where a motion on a torus locks: its rotation number comes to p/q, and it to orbits of q periods."""
 
 from __future__ import annotations
 
@@ -14,9 +14,8 @@ from periodic.phasespace.orbits import Completion
 from periodic.phasespace.recurrence import same
 from periodic.results.point import Point
 from periodic.system.ensembles import FOLLOWED
-from periodic.tori.family import MOST_ANGLES, Family
+from periodic.tori.family import Family
 from periodic.tori.section import Section
-from periodic.tori.step import value_of
 
 LARGEST = 20
 """Largest denominator of a rotation number at which a torus is said to lock."""
@@ -32,13 +31,6 @@ STARTS = 41
 
 ORBITS, ALIKE = 1e-6, 1e-4
 """Tolerance of these orbits, and distance in sizes of the torus at which two of them are one."""
-
-
-def born(family: Family, before: Section, after: Section) -> float:
-    """Return where the torus has no size, by its square, which grows linearly from there (scaled)."""
-    low, high = value_of(family, before), value_of(family, after)
-    a, b = before.size**2, after.size**2
-    return high + (high - low) * b / (a - b)
 
 
 def resonance(torus: Section) -> Fraction | None:
@@ -58,7 +50,7 @@ def orbits_beyond(family: Family, torus: Section, periods: int, way: float) -> t
 
     way: the sign of the parameter's change.
     """
-    equations, last = family.equations, value_of(family, torus)
+    equations, last = family.equations, family.value(torus)
     unit = np.maximum(np.ptp(torus.states, axis=0), np.finfo(float).tiny)
     middle, starts = torus.states.mean(axis=0), torus.states[:: max(1, len(torus.states) // STARTS)]
     for part in BEYOND:
@@ -90,27 +82,7 @@ def _completed(crowd: Crowd, roots: Array, periods: int, unit: Array) -> tuple[P
     return tuple(found)
 
 
-def locked(torus: Section, near: Fraction, orbits: tuple[Point, ...]) -> str:
-    """Return that a motion locks, in words."""
-    told = f"the motion locks: the rotation number {torus.rotation_number:.9g} is near {near}"
-    if not orbits:
-        return f"{told}; no orbit of {near.denominator} periods was found beyond"
-    kinds = " and ".join(name for name, kind in (("stable", True), ("unstable", False)) if _any(orbits, kind))
-    return f"{told}; beyond there are {kinds} orbits of {near.denominator} periods"
-
-
-def _any(orbits: tuple[Point, ...], kind: bool) -> bool:
-    return any(point.stable == kind for point in orbits)
-
-
-def lost(torus: Section) -> str:
-    """Return that no further torus is found, in words."""
-    return f"Newton's method finds no torus beyond, with a rotation number of {torus.rotation_number:.9g}"
-
-
-def rough_in_words(torus: Section) -> str:
-    """Return that a torus cannot be resolved, in words."""
-    return (
-        f"the torus loses its smoothness: its highest harmonics are {torus.tail:.0e} of the largest with "
-        f"{len(torus.states)} angles, and {MOST_ANGLES} are not enough"
-    )
+def kinds(orbits: tuple[Point, ...]) -> str:
+    """Return whether orbits are stable, unstable or both, in words."""
+    each = {True: "stable", False: "unstable"}
+    return " and ".join(name for kind, name in each.items() if any(p.stable == kind for p in orbits))
