@@ -14,7 +14,7 @@ from periodic.orbit.layout import layout_of
 from periodic.orbit.scheme import Array
 from periodic.phasespace.values import parameters
 from periodic.results.point import Point
-from periodic.system import System, check_system, index_of
+from periodic.system import System, check_system, check_value, index_of
 from periodic.tori.family import Family, family_of, not_resolved
 from periodic.tori.invariance import Unknowns
 from periodic.tori.locking import kinds, orbits_beyond, passed, resonance
@@ -105,6 +105,8 @@ def traced(
     free = index_of(system, parameter)
     scale = layout_of(system).parameters[free].scale
     low, high = two("bounds", bounds)
+    for end in (low, high):
+        check_value(system.parameters[free], end)
     given = torus.parameter.copy()
     for name in values or {}:
         given[index_of(system, name)] = parameters(system, values)[index_of(system, name)]
@@ -189,7 +191,7 @@ class OneWay:
                 return
             step, after, ahead = taken
             yield from self._within(step, now.torus)
-            if self.stop:
+            if self.stop or self._refused(after.torus):
                 return
             largest = max(largest, after.torus.size)
             if after.torus.size < BORN * largest and after.torus.size < now.torus.size:
@@ -205,6 +207,18 @@ class OneWay:
             now, tangent, length = after, ahead, min(LONGER * step.length, LONGEST)
             path.append((now, tangent))
         self.stop = f"{self.most} tori, as many as were asked for"
+
+    def _refused(self, torus: Section) -> bool:
+        """Whether a torus needs a value of the released parameter that is not allowed: the end then."""
+        equations = self.family.equations
+        if equations.released is None:
+            return False
+        variable = equations.system.parameters[equations.released]
+        try:
+            check_value(variable, float(torus.parameter[equations.released] * variable.scale))
+        except ValueError as told:
+            self.stop = f"the rotation number would ask for what is not allowed: {told}"
+        return bool(self.stop)
 
     def _resolved(
         self, step: Step | None, path: list[tuple[TorusPoint, Array]]
@@ -312,11 +326,11 @@ class OneWay:
         if near is None or last.free:
             self.stop = otherwise
         elif not orbits:
-            self.stop = f"{otherwise}; that is near {near}, where no orbit of as many periods was found"
+            self.stop = f"{otherwise}; that is near {near}, but no orbit of {_periods(near)} was found there"
         else:
             self.stop = (
                 f"the motion locks: the rotation number {last.rotation_number:.9g} is near {near}; beyond "
-                f"there are {kinds(orbits)} orbits of {near.denominator} periods"
+                f"there are {kinds(orbits)} orbits of {_periods(near)}"
             )
 
     def _locked(self, last: Section, near: Fraction, way: float) -> tuple[Point, ...]:
@@ -324,6 +338,10 @@ class OneWay:
         orbits = () if last.free else orbits_beyond(self.family, last, near.denominator, way)
         self.orbits += orbits
         return orbits
+
+
+def _periods(near: Fraction) -> str:
+    return "1 period" if near.denominator == 1 else f"{near.denominator} periods"
 
 
 def through(before: Section, after: Section) -> bool:

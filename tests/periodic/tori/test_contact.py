@@ -14,7 +14,7 @@ from support.oscillators import X
 import periodic as per
 import symbolic as sym
 from periodic.phasespace.crowd import Crowd
-from periodic.tori import settled
+from periodic.tori import settled, trace
 from periodic.tori.grid import TURN, Grid
 
 pytestmark = pytest.mark.usefixtures("users_kernels")
@@ -111,6 +111,26 @@ def test_family_over_speed() -> None:
     own = asked.torus.rotation_number
     whole = [(own * side - turns * times) % 1.0 for side in (1, -1) for times in (1, -1)]
     assert min(min(each, 1 - each) for each in whole) < 1e-7
+
+
+def test_values_that_are_not_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert a refusal of a range, and the end of a curve whose released parameter may not go on."""
+    system, torus = rotor(), rubbing()
+    with pytest.raises(ValueError, match="parameter 'mu' is -1.0; it must be a number of at least 0"):
+        per.trace(system, "mu", (-1.0, 0.2), guess=torus)
+    kept = torus.traced(system, "speed", (0.79, 0.82), released="mu")
+    assert kept.stops == ("end of the range at 0.79", "end of the range at 0.82")
+    assert kept.rotation_numbers == pytest.approx(torus.rotation_number, rel=1e-14)
+    assert kept[-1].torus.parameters["mu"] < 0.097
+
+    def check(parameter: Any, value: float) -> None:
+        if parameter.name == "mu" and value < 0.097:
+            raise ValueError("mu is too small")
+
+    monkeypatch.setattr(trace, "check_value", check)
+    less = torus.traced(system, "speed", (0.79, 0.82), released="mu")
+    assert less.stops[1] == "the rotation number would ask for what is not allowed: mu is too small"
+    assert 0.097 <= less[-1].torus.parameters["mu"] < 0.1
 
 
 @pytest.mark.parametrize("tolerance", [1e-9, 1e-11])
