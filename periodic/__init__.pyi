@@ -38,6 +38,7 @@ from .phasespace.atlas import atlas
 from .phasespace.basins import basins
 from .phasespace.lyapunov import LyapunovError, lyapunov
 from .phasespace.motions import motions
+from .phasespace.working import working
 from .proof.proof import Proof, proved
 from .results.branch import Branch
 from .results.export.export import export
@@ -150,5 +151,6 @@ __all__ = [
     "torus",
     "trace",
     "unstable",
+    "working",
 ]
 __version__: str

@@ -17,13 +17,13 @@ from periodic.maps.adaptive import Adaptive
 from periodic.maps.cell import Cell, Outcome
 from periodic.maps.chunks import computed
 from periodic.maps.dataset import check_numbers, dataset
-from periodic.maps.execution import Execution, ExecutorGoneError
-from periodic.maps.executors import Here, workers
 from periodic.maps.grid import Grid, Plan
-from periodic.maps.parcel import packed
 from periodic.maps.progress import Progress
 from periodic.maps.store import Store
 from periodic.maps.task import Task
+from periodic.workers.execution import DIED, Execution, ExecutorGoneError
+from periodic.workers.executors import Here, workers
+from periodic.workers.parcel import packed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -60,13 +60,13 @@ class Run:
     found: dict[Cell, Outcome] = field(default_factory=dict)
     begun: float = field(default_factory=perf_counter)
 
-    def through(self, execution: Execution) -> None:
+    def through(self, execution: Execution[Cell, Outcome]) -> None:
         """Compute all cells that are not known yet."""
         known = len(self.found)
         with meter("mapping", "cells", self.plan.total) if self.progress is None else nullcontext() as show:
             self._through(execution, known, show or (lambda steps, said: None))
 
-    def _through(self, execution: Execution, known: int, show: Advance) -> None:
+    def _through(self, execution: Execution[Cell, Outcome], known: int, show: Advance) -> None:
         show(known, "")
         for chunks in self.plan.rounds(self.found, self.size):
             missing = [tuple(cell for cell in chunk if cell not in self.found) for chunk in chunks]
@@ -172,15 +172,15 @@ def design_map(
     size, where = whole("chunk", chunk), workers(executor)
     made = {**task.described(), "grid": plan.described()}
     keeping = nullcontext() if store is None else Store(_path(store), made, resume)
-    parcel = task if isinstance(where, Here) else packed(task)
+    parcel = task if isinstance(where, Here) else packed("task", task)
     with closing(where), keeping as kept:
         if kept is not None and kept.finished is not None:
             return kept.finished
         run = Run(task, plan, size, kept, progress, {} if kept is None else kept.found)
-        return _through(run, Execution(where, lambda cells: (computed, parcel, plan.names, cells)))
+        return _through(run, Execution(where, lambda cells: (computed, parcel, plan.names, cells), _lost))
 
 
-def _through(run: Run, execution: Execution) -> xr.Dataset:
+def _through(run: Run, execution: Execution[Cell, Outcome]) -> xr.Dataset:
     """Compute what is missing, and write and return all; also where that comes to an early end."""
     try:
         run.through(execution)
@@ -191,6 +191,11 @@ def _through(run: Run, execution: Execution) -> xr.Dataset:
         data = run.written()
         raise MapStoppedError(run.stopped(f"the executor went away ({error})"), data) from error
     return run.written()
+
+
+def _lost(cell: Cell) -> Outcome:
+    """What becomes of a cell that nothing has come back from."""
+    return Outcome(cell, reason=DIED, lost=True)
 
 
 def _path(store: object) -> Path:

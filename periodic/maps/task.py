@@ -7,17 +7,15 @@ from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
 from typing import Any, Protocol
 
-import numpy as np
-
 from periodic.checks import named
 from periodic.correction.condition import Condition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.problem import Problem
 from periodic.correction.tolerance import Accuracy, Tolerance
-from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import Orbit
 from periodic.results.branch import Branch
 from periodic.results.described import described
+from periodic.results.identity import identity
 from periodic.system import System
 from periodic.tracing.resumption import made_with
 from periodic.tracing.setup import Method, Setup, setup
@@ -236,15 +234,5 @@ class Task:
             "start": self.begin,
             **made_with(self.ready()),
             "numbers": described(self.numbers),
-            "system": {"layout": described(layout_of(self.system)), "residual": _residual(self.system)},
+            "system": identity(self.system),
         }
-
-
-def _residual(system: System) -> list[str]:
-    """The residual at one point, to six digits: other equations under the same names have another one."""
-    n, m = len(system.states), len(getattr(system, "algebraics", ()))
-    rate, state = 0.1 * np.cos(1.0 + np.arange(2.0 * n)).reshape(2, 1, n)
-    algebraic, phase = 0.1 + 0.01 * np.arange(float(m))[None], np.array([0.7])
-    parameter = np.array(system.nominal, dtype=float)
-    found = system.linearise(rate, state, algebraic, phase, parameter).residual
-    return [f"{value:.5e}" for value in found.ravel()]

@@ -5,5 +5,18 @@ from periodic.phasespace.lyapunov import Exponents
 from periodic.phasespace.motion import Motion, Motions, Sort
 from periodic.phasespace.partition import Basins
 from periodic.phasespace.picture import Elsewhere
+from periodic.phasespace.working import WorkStoppedError
+from periodic.results.kept import StoreError
 
-__all__ = ["Atlas", "Basins", "Elsewhere", "Exponents", "Motion", "Motions", "Sheet", "Sort"]
+__all__ = [
+    "Atlas",
+    "Basins",
+    "Elsewhere",
+    "Exponents",
+    "Motion",
+    "Motions",
+    "Sheet",
+    "Sort",
+    "StoreError",
+    "WorkStoppedError",
+]

@@ -19,11 +19,10 @@ from periodic.phasespace.box import box_of
 from periodic.phasespace.charted import Atlas, Sheet, stretches
 from periodic.phasespace.motion import Motion, Motions, Sort
 from periodic.phasespace.search import Search, search_of
+from periodic.phasespace.traced import traced
 from periodic.results.branch import Branch
 from periodic.system import System, index_of
 from periodic.tracing.steps.stepsize import ArclengthControl
-from periodic.tracing.trace import trace
-from periodic.tracing.watch import Watch
 
 NEAR = 1e-3
 """Distance of an orbit's states from a branch's, in widths of the box, where it is on it."""
@@ -197,8 +196,8 @@ class Chart:
             self.remarks.append(f"{what}: there are {BRANCHES} branches already")
             return
         try:
-            branch = trace(
-                self.first.crowd.system,
+            branch = traced(
+                self.first.crowd,
                 self.parameter,
                 (float(self.at[0]), float(self.at[-1])),
                 start=value,
@@ -206,7 +205,6 @@ class Chart:
                 guess=motion.point.orbit,
                 tol=self.first.tol,
                 control=ArclengthControl(max_points=POINTS),
-                watch=Watch(peaks={}, progress=lambda point: None),
             )
         except FAILURES as failed:
             self.remarks.append(f"{what}: {failed}")

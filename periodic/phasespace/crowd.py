@@ -1,21 +1,22 @@
-"""Many motions at once, on all cores: compiled code leaves Python's lock to others while it runs."""
+"""Many motions at once."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+import json
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, cast
 
-import numpy as np
-
 from periodic.checks import between
 from periodic.orbit.scheme import Array
-from periodic.phasespace.onebyone import Each, OneByOne
+from periodic.phasespace.onebyone import OneByOne
+from periodic.phasespace.parts import Part, Targets, joined
+from periodic.phasespace.shared import followed
+from periodic.results.files import digest
+from periodic.results.identity import identity, versions
 from periodic.system import Ensembling, Moving, System
 from periodic.system.ensembles import EnsembleLike, FollowedLike
+from periodic.workers.parcel import packed
 
 AT_ONCE = 64
 """Motions that one call follows: few enough that Ctrl-C is heard soon."""
@@ -54,6 +55,17 @@ class Crowd:
             )
         return OneByOne(cast(Moving, self.system), *given)
 
+    @cached_property
+    def identity(self) -> str:
+        """What tells its motions from those of others: system, parameters, tolerance and what computes."""
+        system = identity(self.system), versions(), type(self.ensemble).__name__
+        said = json.dumps([*system, self.parameter.tolist(), self.tolerance])
+        return digest(said.encode())
+
+    def parcel(self) -> bytes:
+        """What travels to other processes. Raises ValueError for a system that cannot."""
+        return packed("system", replace(self))
+
     def begin(self, state: Array) -> Array:
         """Return y of states (S, n) at phase 0: see `EnsembleLike`."""
         return self.ensemble.begin(state)
@@ -72,47 +84,10 @@ class Crowd:
         tangents: Array | None = None,
         keep: bool = False,
         raw: bool = False,
-        targets: tuple[Array, Sequence[int], Array, float] | None = None,
+        targets: Targets | None = None,
     ) -> FollowedLike:
         """Follow motions, see `EnsembleLike`: those of S rows are followed in parts, in their order."""
         if not len(start):
             return self.ensemble.run(start, 0, stretch, keep=keep, tangents=tangents)
-        parts = [slice(k, k + AT_ONCE) for k in range(0, len(start), AT_ONCE)]
-
-        def one(part: slice) -> FollowedLike:
-            return self.ensemble.run(
-                start[part],
-                count,
-                stretch,
-                modes=None if modes is None else modes[part],
-                keep=keep,
-                tangents=None if tangents is None else tangents[part],
-                raw=raw,
-                targets=targets,
-            )
-
-        if len(parts) == 1 or cores() == 1 or isinstance(self.ensemble, OneByOne):
-            return _joined([one(part) for part in parts])
-        with ThreadPoolExecutor(cores()) as pool:
-            return _joined(list(pool.map(one, parts)))
-
-
-def cores() -> int:
-    """Return how many cores this process may use."""
-    allowed = getattr(os, "sched_getaffinity", None)
-    return len(allowed(0)) if allowed else os.cpu_count() or 1
-
-
-def _joined(parts: Sequence[FollowedLike]) -> FollowedLike:
-    """All motions in one."""
-    if len(parts) == 1:
-        return parts[0]
-    kept = [part.sections for part in parts if part.sections is not None]
-    names = ("ends", "modes", "outcome", "label", "changes")
-    first = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
-    return Each(
-        **first,
-        sections=np.concatenate(kept) if kept else None,
-        growth=np.concatenate([part.growth for part in parts]),
-        tangents=np.concatenate([part.tangents for part in parts]),
-    )
+        every = Part(start, count, stretch, modes, tangents, keep, raw, targets)
+        return joined(followed(self, every.cut(AT_ONCE)))

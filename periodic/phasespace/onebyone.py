@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from periodic.orbit.scheme import Array
+from periodic.phasespace.parts import Each
 from periodic.system import Moving, surfaces_of
 from periodic.system.ensembles import DIVERGED, FOLLOWED, LOST
 
@@ -21,20 +22,6 @@ APART = 1e-6
 
 LEAST = 1e-14
 """A tangent of which no more is left beside the others has vanished."""
-
-
-@dataclass(frozen=True, eq=False)
-class Each:
-    """What became of motions: see `periodic.system.ensembles.FollowedLike`."""
-
-    ends: Array
-    modes: Any
-    outcome: Any
-    label: Any
-    sections: Array | None
-    growth: Array
-    tangents: Array
-    changes: Any
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,12 +20,11 @@ from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array, Scheme
 from periodic.phasespace.crowd import Crowd
+from periodic.phasespace.traced import traced
 from periodic.results.point import Point
 from periodic.system import Moving, System, check_value
 from periodic.tracing.continuation import RepeatsError
 from periodic.tracing.steps.stepsize import ArclengthControl
-from periodic.tracing.trace import trace
-from periodic.tracing.watch import Watch
 
 SAMPLES = 193
 """Phases of a motion in a period of the excitation,"""
@@ -135,8 +134,8 @@ class Completion:
         """The first point of a branch from a guess."""
         name, bounds = self._beside()
         with contextlib.suppress(*FAILURES):
-            branch = trace(
-                self.system,
+            branch = traced(
+                self.crowd,
                 name,
                 (min(bounds), max(bounds)),
                 start=bounds[0],
@@ -145,7 +144,6 @@ class Completion:
                 determined=determined,
                 method=method,
                 control=ArclengthControl(max_points=1),
-                watch=Watch(peaks={}, progress=lambda point: None),
             )
             if len(branch):
                 return branch[0]

@@ -10,10 +10,9 @@ from periodic.correction.condition import Condition
 from periodic.correction.outcome import FAILURES
 from periodic.orbit.orbit import FORCED
 from periodic.phasespace.settle import Settling
+from periodic.phasespace.traced import traced
 from periodic.results.branch import Branch
 from periodic.system import index_of
-from periodic.tracing.trace import trace
-from periodic.tracing.watch import Watch
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,8 +43,8 @@ class Round:
             if one.point is None or one.periods == 0:
                 continue
             try:
-                branch = trace(
-                    system,
+                branch = traced(
+                    self.settling.crowd,
                     self.parameter,
                     (low, high),
                     start=value,
@@ -53,7 +52,6 @@ class Round:
                     at=[value],
                     tol=self.tol,
                     determined=self.determined,
-                    watch=Watch(peaks={}, progress=lambda point: None),
                 )
             except FAILURES:
                 lost += 1

@@ -15,11 +15,12 @@ import sqlite3
 import tempfile
 import warnings
 import zipfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing, suppress
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 import numpy as np
 
@@ -112,7 +113,7 @@ class Journal:
         """
         with deferred():
             checkpoints = () if checkpoint is None else (checkpoint,)
-            content = _packed(replace(self._empty, points=tuple(points), stop=stop, checkpoints=checkpoints))
+            content = _bytes(replace(self._empty, points=tuple(points), stop=stop, checkpoints=checkpoints))
             if self._broken:
                 return
             try:
@@ -254,16 +255,21 @@ def _steps(base: sqlite3.Connection) -> Iterator[Record]:
             for count, (number, content, seal) in enumerate(rows):
                 if number != count or not isinstance(content, bytes) or seal != digest(content):
                     return
-                yield _unpacked(content)
+                yield unpacked(archive(content, len(content)))
 
 
-def _packed(piece: Record) -> bytes:
+def _bytes(piece: Record) -> bytes:
     memory = io.BytesIO()
-    said = np.frombuffer(json.dumps(attributes(piece)).encode(), dtype=np.uint8)
-    np.savez(memory, allow_pickle=False, said=said, **{n: array for n, (_, array) in tables(piece).items()})
+    np.savez(memory, allow_pickle=False, **packed(piece))
     return memory.getvalue()
 
 
-def _unpacked(content: bytes) -> Record:
-    arrays = archive(content, len(content))
+def packed(piece: Record) -> dict[str, np.ndarray[Any, Any]]:
+    """Return a record as arrays by name, none of objects."""
+    said = np.frombuffer(json.dumps(attributes(piece)).encode(), dtype=np.uint8)
+    return {"said": said, **{name: array for name, (_, array) in tables(piece).items()}}
+
+
+def unpacked(arrays: Mapping[str, np.ndarray[Any, Any]]) -> Record:
+    """Return the record of such arrays, bit for bit."""
     return record_of(arrays, json.loads(arrays["said"].tobytes()))

@@ -7,8 +7,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
-from functools import cache, lru_cache, partial
-from importlib import metadata
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any, overload
 
@@ -24,6 +23,7 @@ from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import Orbit
 from periodic.results.branch import Branch
 from periodic.results.halves import Half, joined
+from periodic.results.identity import versions
 from periodic.results.journal import Journal
 from periodic.results.point import Point
 from periodic.results.stop import Reason, Stop
@@ -305,14 +305,6 @@ def _joined(empty: Branch, runs: list[Continuation], elapsed: float, before: Bra
         joined(empty.parameter, empty.layout, halves, empty.made),
         newton_iterations=runs[0].solver.work.iterations,
         elapsed=elapsed + (before.elapsed if before else 0.0),
-        versions={name: _version(name) for name in ("orbitrace", "numpy", "scipy")},
+        versions=versions(),
         onwards=empty.onwards,
     )
-
-
-@cache
-def _version(name: str) -> str:
-    try:
-        return metadata.version(name)
-    except metadata.PackageNotFoundError:
-        return "not installed"

@@ -16,7 +16,7 @@ import xarray as xr
 from support.maps import GRID, Deadly, ends, height, process, task
 
 import periodic as per
-from periodic.maps.execution import DIED
+from periodic.workers.execution import DIED
 
 pytestmark = pytest.mark.distributed
 

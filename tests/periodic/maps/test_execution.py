@@ -13,11 +13,11 @@ import pytest
 from periodic.maps import chunks, store
 from periodic.maps import map as maps
 from periodic.maps.cell import Outcome
-from periodic.maps.execution import DIED, Execution, ExecutorGoneError
 from periodic.maps.map import Run
 from periodic.maps.numbers import stationary
 from periodic.maps.progress import Progress
 from periodic.maps.store import LEAST_SECONDS, RARELY, Store
+from periodic.workers.execution import DIED, Execution, ExecutorGoneError
 
 CHUNKS = [((1.0,), (2.0,)), ((3.0,), (4.0,)), ((5.0,),)]
 
@@ -48,7 +48,7 @@ class Workers:
 
 def done(workers: Any, work: Any = CHUNKS) -> list[Any]:
     """Cells with the reason why they have no numbers, chunk by chunk."""
-    found = Execution(workers, lambda chunk: (chunk,)).outcomes(work)
+    found = Execution(workers, lambda chunk: (chunk,), maps._lost).outcomes(work)
     return [[(outcome.cell[0], outcome.reason, outcome.lost) for outcome in each] for each in found]
 
 
@@ -130,7 +130,7 @@ def test_executor_that_takes_no_more_work() -> None:
 
     found: list[Any] = []
     with pytest.raises(ExecutorGoneError, match="^RuntimeError: cannot schedule new futures$"):
-        for outcomes in Execution(Full(ahead=3), lambda chunk: (chunk,)).outcomes(CHUNKS):  # type: ignore[arg-type]
+        for outcomes in Execution(Full(ahead=3), lambda chunk: (chunk,), maps._lost).outcomes(CHUNKS):  # type: ignore[arg-type]
             found.append(outcomes)
     assert [len(each) for each in found] == [2, 2]
 

@@ -12,7 +12,7 @@ import pytest
 from support.maps import GRID, Deadly, task
 
 import periodic as per
-from periodic.maps.execution import DIED
+from periodic.workers.execution import DIED
 
 pytestmark = pytest.mark.faults
 

@@ -13,12 +13,13 @@ from support.numpy_systems import LinearOscillator
 
 import periodic as per
 from periodic.bifurcations.label import Label
-from periodic.maps import chunks, executors, grid
+from periodic.maps import chunks, grid
 from periodic.maps.cell import Outcome
 from periodic.maps.dataset import _column, _owner, _status, check_numbers, dataset
 from periodic.maps.numbers import extremes
 from periodic.maps.numbers.places import _alone
 from periodic.maps.numbers.reading import read, settled, unit_of
+from periodic.workers import executors
 
 HEIGHT = per.PeakToPeak("x")
 

@@ -44,7 +44,7 @@ BEGIN = """
 import os
 import signal
 import sqlite3
-from periodic.maps.executors import Processes
+from periodic.workers.executors import Processes
 def main():
     where = Processes(2)
     where.submit(abs, 1)

@@ -14,7 +14,7 @@ from support.commands import check_sentence, refusal
 
 import periodic as per
 import symbolic as sym
-from periodic.maps.executors import Workers
+from periodic.workers.executors import Workers
 from reports.app.cli import main
 from reports.app.map import command, picture, run
 

@@ -7,13 +7,14 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Future
 from dataclasses import dataclass
 from queue import SimpleQueue
-from typing import Any
+from typing import Any, Generic, TypeVar
 
-from periodic.maps.cell import Chunk, Outcome
-from periodic.maps.executors import Workers, died
+from periodic.workers.executors import Workers, died
 
-Work = Callable[[Chunk], tuple[Any, ...]]
-"""What a chunk is submitted as: a function and its arguments."""
+Cell = TypeVar("Cell")
+Outcome = TypeVar("Outcome")
+
+Chunk = tuple[Cell, ...]
 
 DIED = "the process that computed it died"
 """The reason of a cell that nothing has come back from."""
@@ -24,24 +25,28 @@ class ExecutorGoneError(RuntimeError):
 
 
 @dataclass
-class Execution:
-    """Chunks that are computed by workers, as many at a time as they take.
+class Execution(Generic[Cell, Outcome]):
+    """Chunks of cells that are computed by workers, as many at a time as they take.
+
+    work: what a chunk is submitted as, a function and its arguments, that returns the outcomes of its cells.
+    lost: the outcome of a cell that has none.
 
     A chunk whose worker died is computed again cell by cell: the cell at which a worker dies again is lost.
     Processes of our own all die together: there each chunk under way is first computed again by itself.
     """
 
     workers: Workers
-    work: Work
+    work: Callable[[Chunk[Cell]], tuple[Any, ...]]
+    lost: Callable[[Cell], Outcome]
 
-    def outcomes(self, chunks: Sequence[Chunk]) -> Iterator[list[Outcome]]:
+    def outcomes(self, chunks: Sequence[Chunk[Cell]]) -> Iterator[list[Outcome]]:
         """Yield what becomes of each chunk, in the order in which they are done.
 
         Raises ExecutorGoneError where the executor takes no more work, and whatever else the work raises.
         """
         waiting = deque(chunks)
         while waiting:
-            suspects: list[Chunk] = []
+            suspects: list[Chunk[Cell]] = []
             for chunk, found in self._together(waiting):
                 if found is None:
                     suspects.append(chunk)
@@ -51,9 +56,9 @@ class Execution:
             for chunk in suspects:
                 yield from self._alone(chunk)
 
-    def _together(self, waiting: deque[Chunk]) -> Iterator[tuple[Chunk, list[Outcome] | None]]:
+    def _together(self, waiting: deque[Chunk[Cell]]) -> Iterator[tuple[Chunk[Cell], list[Outcome] | None]]:
         """Yield chunks with what became of them, None where a worker died; then no more are begun."""
-        under_way: dict[Future[Any], Chunk] = {}
+        under_way: dict[Future[Any], Chunk[Cell]] = {}
         done: SimpleQueue[Future[Any]] = SimpleQueue()
         broken = False
         try:
@@ -70,7 +75,7 @@ class Execution:
             yield from ((chunk, future.result()) for future, chunk in under_way.items() if _whole(future))
             raise
 
-    def _alone(self, chunk: Chunk) -> Iterator[list[Outcome]]:
+    def _alone(self, chunk: Chunk[Cell]) -> Iterator[list[Outcome]]:
         """Yield the outcomes of a chunk whose worker may have died of it, submitted by itself."""
         found = self._result(self._submitted(chunk))
         if found is not None:
@@ -78,17 +83,17 @@ class Execution:
             return
         self._cleared([chunk])
         if len(chunk) == 1:
-            yield [Outcome(chunk[0], reason=DIED, lost=True)]
+            yield [self.lost(chunk[0])]
         else:
             for cell in chunk:
                 yield from self._alone((cell,))
 
-    def _cleared(self, suspects: Sequence[Chunk]) -> None:
+    def _cleared(self, suspects: Sequence[Chunk[Cell]]) -> None:
         """Let new processes take the place of our own, all of which die with one."""
         if suspects and self.workers.own:
             self.workers.close()
 
-    def _submitted(self, chunk: Chunk) -> Future[Any]:
+    def _submitted(self, chunk: Chunk[Cell]) -> Future[Any]:
         """The future of a chunk; where the executor is broken already, one that says so."""
         try:
             return self.workers.submit(*self.work(chunk))

@@ -11,7 +11,7 @@ from concurrent.futures import BrokenExecutor, Executor, Future
 from typing import Any, Protocol
 
 from periodic.checks import whole
-from periodic.phasespace.crowd import cores
+from periodic.workers.cores import cores
 
 CHUNKS_AHEAD = 10_000
 """Chunks given to a user's executor before the first is done: more than it has workers."""
