@@ -5,6 +5,7 @@ from periodic.phasespace.lyapunov import Exponents
 from periodic.phasespace.motion import Motion, Motions, Sort
 from periodic.phasespace.partition import Basins
 from periodic.phasespace.picture import Elsewhere
+from periodic.phasespace.stages import SearchInterrupted
 from periodic.phasespace.working import WorkStoppedError
 from periodic.results.kept import StoreError
 
@@ -15,6 +16,7 @@ __all__ = [
     "Exponents",
     "Motion",
     "Motions",
+    "SearchInterrupted",
     "Sheet",
     "Sort",
     "StoreError",

@@ -19,6 +19,7 @@ from periodic.phasespace.box import box_of
 from periodic.phasespace.charted import Atlas, Sheet, stretches
 from periodic.phasespace.motion import Motion, Motions, Sort
 from periodic.phasespace.search import Search, search_of
+from periodic.phasespace.stages import Stages
 from periodic.phasespace.traced import traced
 from periodic.results.branch import Branch
 from periodic.system import System, index_of
@@ -143,7 +144,7 @@ class Chart:
     def look(self, k: int, value: float) -> Motions:
         """Look for all motions at one of the values, and trace branches of those on none that is known."""
         search = self._there(value)
-        found = search.run({}, lambda said: None)
+        found = Stages(search, {}).run(lambda said: None)
         self.motions.append(found)
         for motion in found:
             if motion.point is None or motion.sort != Sort.PERIODIC:

@@ -8,6 +8,7 @@ from periodic.correction.tolerance import Accuracy
 from periodic.display.meter import meter
 from periodic.phasespace.motion import Motions
 from periodic.phasespace.search import search_of
+from periodic.phasespace.stages import Stages
 from periodic.system import System
 
 
@@ -66,7 +67,9 @@ def motions(
     ------
     ValueError
         For names, numbers, ranges and systems that are not allowed.
+    SearchInterrupted
+        For Ctrl-C: its `found` is what was found until then, with what was not tried.
     """
     search = search_of(system, values, box, periods, starts, settle, places, seed, tol)
     with meter("looking for motions", "parts of it") as show:
-        return search.run({} if along is None else along, lambda said: show(1, said))
+        return Stages(search, {} if along is None else along).run(lambda said: show(1, said))

@@ -2,31 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from periodic.checks import named, positive, whole
+from periodic.checks import positive, whole
 from periodic.conditions.phase import PhaseCondition, excited
 from periodic.correction.condition import Condition
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
-from periodic.phasespace.aperiodic import Attractors
 from periodic.phasespace.box import Box, box_of
 from periodic.phasespace.clocks import Clock, Forced, Free
 from periodic.phasespace.crowd import Crowd
-from periodic.phasespace.images import Images
 from periodic.phasespace.known import Known, Orbits
-from periodic.phasespace.manifolds import Manifolds
-from periodic.phasespace.motion import Motion, Motions, Sort, interval
+from periodic.phasespace.motion import Motion, Sort, interval
 from periodic.phasespace.orbits import Completion
-from periodic.phasespace.round import Round
 from periodic.phasespace.settle import Settling
-from periodic.phasespace.symmetries import symmetries_of
-from periodic.phasespace.unexcited import Unexcited
-from periodic.phasespace.unstable import Unstable
 from periodic.phasespace.values import parameters
 from periodic.system import System, check_system, frequency_of
 
@@ -85,47 +78,6 @@ class Search:
     seed: int
     tol: float
 
-    def run(self, along: Mapping[str, tuple[float, float]], say: Callable[[str], None]) -> Motions:
-        """Return what is found."""
-        settling = self.settled()
-        say(f"{len(settling.orbits)} orbits from {self.starts} starts")
-        tried = [
-            f"{self.starts} motions from random places in the box, for {self.settle} periods at the most"
-        ]
-        others = Attractors(self.crowd, settling.clock, settling.unit)
-        labels = others.sorted_of(settling)
-        say(f"{len(others.found)} other attractors")
-        if self.places:
-            tried += [self._unstable(settling), Manifolds(settling).run()]
-            say(f"{len(settling.orbits)} orbits with unstable ones")
-        for name, bounds in named("along", along, "ranges of parameters").items():
-            tried.append(Round(settling, name, bounds, self.tol, self._determined).run())
-        images = Images(settling, symmetries_of(self.crowd, self.box, self.seed, not self.frequency))
-        if images.symmetries:
-            tried.append(images.run())
-        made = [self.motion(one, self.starts) for one in settling.orbits.each]
-        made += [others.motion(k, int((labels == k).sum()), self.starts) for k in range(len(others.found))]
-        undecided = self.starts - len(settling.gone) - sum(motion.starts for motion in made)
-        names = [p.name for p in self.crowd.system.parameters]
-        made.sort(key=lambda motion: (not motion.stable, -motion.starts, motion.periods))
-        return Motions(
-            images.marked(tuple(made), others),
-            dict(zip(names, self.crowd.parameter.tolist(), strict=True)),
-            self.box.ranges,
-            self.starts,
-            len(settling.gone),
-            undecided,
-            tuple(tried),
-        )
-
-    def settled(self) -> Settling:
-        """Return motions from all starts, followed to their ends."""
-        system, parameter = self.crowd.system, self.crowd.parameter
-        y = self.crowd.begin(self.box.draw(self.starts, self.seed, system, parameter))
-        settling = self.settling(y)
-        settling.run()
-        return settling
-
     def settling(self, y: Array) -> Settling:
         """Return motions from y (S, w), not followed yet."""
         clock, unit = self.clock, self.box.width
@@ -145,7 +97,8 @@ class Search:
         return names[0]
 
     @property
-    def _determined(self) -> dict[str, Condition]:
+    def determined(self) -> dict[str, Condition]:
+        """How the phase of an orbit of a system that is not excited is determined."""
         return {self.frequency: PhaseCondition()} if self.frequency else {}
 
     @cached_property
@@ -156,12 +109,6 @@ class Search:
             return Forced(completion, self.periods)
         some = self.box.draw(1, self.seed, self.crowd.system, self.crowd.parameter)
         return Free(completion, self.crowd, self.crowd.begin(some))
-
-    def _unstable(self, settling: Settling) -> str:
-        """Add unstable orbits, or equilibria and cycles; what was tried, in words."""
-        if self.frequency:
-            return Unexcited(settling, self.box, self.places, self.seed).run()
-        return Unstable(settling, self.box, self.periods, self.places, self.seed).run()
 
     def motion(self, one: Known, of: int) -> Motion:
         """Return an orbit as it is given, with its share of a number of starts."""

@@ -19,8 +19,8 @@ import symbolic as sym
 NAMES = ("c", "k", "k3", "kg", "gap", "low", "F", "Omega")
 """Parameters of an oscillator, in the order of judge.c."""
 
-PERIODS, STEPS, KEPT = 400, 200, 48
-"""Periods that motions are followed, steps in each, and the last ones that are looked at."""
+PERIODS, STEPS, KEPT = 432, 200, 48
+"""Periods that motions are followed, steps in each, and the last ones that are looked at, as in judge.c."""
 
 SAME = 1e-3
 """Distance of two motions' states that are one, in the size of the box."""
@@ -115,37 +115,39 @@ def _alike(judged: Attractor, periods: int, sections: Any) -> bool:
 
 
 def _sorted(sections: Any) -> list[Attractor]:
-    """The attractors of motions (S, KEPT, 2), by what they are at the end."""
-    found: list[tuple[int, Any, int]] = []
-    for path in sections[np.isfinite(sections).all(axis=(1, 2))]:
-        periods = next((p for p in range(1, MOST + 1) if np.abs(path[p:] - path[:-p]).max() < SETTLED), 0)
-        states = path[-periods:] if periods else path
-        for k, (other, known, count) in enumerate(found):
-            if other == periods and _one(states, known, periods):
-                found[k] = (other, known, count + 1)
-                break
-        else:
-            found.append((periods, states, 1))
-    total = len(sections)
-    each = [Attractor(periods, states, count / total) for periods, states, count in found]
-    return sorted(each, key=lambda attractor: -attractor.share)
+    """The attractors of motions (S, KEPT, 2), by what they are at the end; all that do not come back are one."""
+    total, left = len(sections), sections[np.isfinite(sections).all(axis=(1, 2))]
+    found: list[Attractor] = []
+    for periods in range(1, MOST + 1):
+        back = np.abs(left[:, periods:] - left[:, :-periods]).max(axis=(1, 2)) < SETTLED
+        found += _grouped(left[back, -periods:], total)
+        left = left[~back]
+    if len(left):
+        found.append(Attractor(0, left[0], len(left) / total))
+    return sorted(found, key=lambda attractor: -attractor.share)
 
 
-def _one(states: Any, known: Any, periods: int) -> bool:
-    """Whether two motions are one; all that do not come back are one here."""
-    if periods == 0:
-        return True
-    return bool(np.abs(states[:, None] - known).max(axis=2).min(axis=1).max() < SAME * 2 * BOX)
+def _grouped(states: Any, total: int) -> list[Attractor]:
+    """The attractors of motions by their states (S, p, 2) of the last p periods."""
+    found: list[Attractor] = []
+    while len(states):
+        known = states[0]
+        apart = np.abs(states[:, :, None] - known).max(axis=3).min(axis=2).max(axis=1)
+        own = apart < SAME * 2 * BOX
+        found.append(Attractor(len(known), known, float(own.sum()) / total))
+        states = states[~own]
+    return found
 
 
 def _followed(parameters: Any, y: Any, steps: int) -> Any:
     """Sections (S, KEPT, 2) of motions from y (S, 2), on two cores."""
     parts = np.array_split(y, 16)
+    force = parameters[6] * np.cos(np.pi / steps * np.arange(2 * steps + 1))
 
     def one(part: Any) -> Any:
         part, sections = np.ascontiguousarray(part), np.empty((len(part), KEPT, 2))
-        given = [a.ctypes.data_as(ctypes.c_void_p) for a in (parameters, part, sections)]
-        _judge().settle(len(part), PERIODS, steps, KEPT, *given)
+        given = [a.ctypes.data_as(ctypes.c_void_p) for a in (parameters, force, part, sections)]
+        _judge().settle(len(part), PERIODS, steps, *given)
         return sections
 
     with ThreadPoolExecutor(2) as pool:
@@ -157,7 +159,9 @@ def _judge() -> Any:
     """The judge's integrator, compiled."""
     source = Path(__file__).with_name("judge.c")
     library = Path(tempfile.mkdtemp()) / "judge.so"
-    subprocess.run(["cc", "-O2", "-fPIC", "-shared", "-o", library, source, "-lm"], check=True)
+    subprocess.run(
+        ["cc", "-O3", "-march=native", "-fPIC", "-shared", "-o", library, source, "-lm"], check=True
+    )
     made = ctypes.CDLL(str(library))
-    made.settle.argtypes, made.settle.restype = [ctypes.c_long] * 4 + [ctypes.c_void_p] * 3, None
+    made.settle.argtypes, made.settle.restype = [ctypes.c_long] * 3 + [ctypes.c_void_p] * 4, None
     return made

@@ -9,7 +9,7 @@ from typing import Any
 from reports.studies.motions.judge import STEPS, Oscillator, found, missed
 from reports.studies.pages.content import Found, Kept, Section, Tell
 
-OSCILLATORS, STARTS = range(30, 50), 2000
+OSCILLATORS, STARTS = range(50), 100_000
 """Seeds of the oscillators, and starts of the judge for each."""
 
 FINER = 6
