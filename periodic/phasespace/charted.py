@@ -2,63 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
+from periodic.phasespace.aperiodicranges import aperiodic_ranges
+from periodic.phasespace.atlaspage import shown
 from periodic.phasespace.motion import Motions
-from periodic.results.branch import Branch
+from periodic.phasespace.sheet import Sheet
+from periodic.phasespace.stretches import LETTERS, PLAIN, End, ends, stretches
+from periodic.results.interactive.pictures import Shown
 from periodic.results.plots.frame import dressed
 from periodic.results.point import Point
+from periodic.system import System
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-LETTERS, MARKERS = "abcdefghijklmnopqrstuvwxyz", "os^vDx"
-"""Names of a branch's stable stretches, and their marks."""
-
-PLAIN = ("EP", "UZ", "")
-"""Labels of points at which nothing happens."""
-
-
-def stretches(branch: Branch) -> list[int]:
-    """Return for each point of a branch the number of the stable stretch that it is on, -1 where unstable."""
-    found, last, before = list[int](), -1, False
-    for point in branch:
-        last, before = last + (point.stable and not before), point.stable
-        found.append(last if point.stable else -1)
-    return found
-
-
-@dataclass(frozen=True, eq=False)
-class Sheet:
-    """A branch of an atlas.
-
-    Parameters
-    ----------
-    branch : Branch
-        The orbits.
-    periods : int
-        After how many excitation periods they come back.
-    sections : list of list of (int, ndarray)
-        At each of the atlas's values its orbits there: the number of the stable stretch, -1 where unstable,
-        and the states once in each period.
-    shares : ndarray, shape (stretches, K)
-        The part of the box that leads to the orbits of each of its stable stretches, at each value.
-    """
-
-    branch: Branch
-    periods: int
-    sections: list[list[tuple[int, Array]]]
-    shares: Array
-
-    @property
-    def name(self) -> str:
-        """What its orbits are, in words."""
-        return "one period" if self.periods == 1 else f"{self.periods} periods"
+MARKERS = "os^vDx"
+"""Of a branch's stable stretches."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -81,6 +46,8 @@ class Atlas:
         The diagram beneath: values, and the state (SI) of motions that have settled from a few starts.
     remarks : tuple of str
         What could not be done, in words.
+    units : ndarray, shape (K, n)
+        SI values of one internal unit of each state, at each value.
     """
 
     parameter: str
@@ -92,6 +59,7 @@ class Atlas:
     sheets: tuple[Sheet, ...]
     dots: Array
     remarks: tuple[str, ...] = ()
+    units: Array = field(default_factory=lambda: np.zeros((0, 0)), repr=False)
 
     def __repr__(self) -> str:
         return (
@@ -103,27 +71,32 @@ class Atlas:
         lines = [repr(self)]
         for k, sheet in enumerate(self.sheets, 1):
             lines.append(f"{k}: {sheet.name}; {sheet.branch.stop}")
-            lines += [
-                self._attracts(f"{k}{letter}", shares)
-                for letter, shares in zip(LETTERS, sheet.shares, strict=False)
-                if (shares > 0).any()
-            ]
-            lines += [
-                f"   {point.label} at {point.parameter:.9g}"
-                for point in sheet.branch
-                if str(point.label) not in PLAIN
-            ]
-        for value, found in zip(self.values, self.motions, strict=True):
-            others = [motion for motion in found.stable if motion.point is None]
-            lines += [f"at {value:.6g}: {motion.name}, {motion.tells}" for motion in others]
+            each = zip(LETTERS, sheet.shares, ends(sheet.branch), strict=False)
+            lines += [self._stretch(f"{k}{letter}", shares, own) for letter, shares, own in each]
+            special = [p for p in sheet.branch if str(p.label) not in PLAIN]
+            said = ", ".join(str(End(point.parameter, str(point.label))) for point in special)
+            lines += [f"   {said}"] if said else []
+        branches = [sheet.branch for sheet in self.sheets]
+        lines += aperiodic_ranges(self.values, self.motions, branches)
         return "\n".join([*lines, *self.remarks])
 
-    def _attracts(self, name: str, shares: Array) -> str:
-        """What part of the box leads to a stable stretch, and where, in words."""
+    def _stretch(self, name: str, shares: Array, own: tuple[End, End]) -> str:
+        """Where a stable stretch begins and ends, and what part of the box leads to it, in words."""
+        where = f"   {name} is stable from {own[0]} to {own[1]}"
         there = np.flatnonzero(shares > 0)
+        if not len(there):
+            return where
         low, high = 100 * shares[there].min(), 100 * shares.max()
-        first, last = self.values[there[0]], self.values[there[-1]]
-        return f"   {name} attracts {low:.1f} to {high:.1f} % of the box from {first:.6g} to {last:.6g}"
+        return f"{where}, and attracts {low:.1f} to {high:.1f} % of the box"
+
+    @property
+    def box(self) -> dict[str, tuple[float, float]]:
+        """The ranges of states (SI) in which motions started, by name."""
+        return self.motions[0].box
+
+    def shown(self, system: System | None = None) -> Shown:
+        """Return what the page of it shows: see `per.page`."""
+        return shown(self)
 
     def plot(self) -> Figure:
         """Plot the branches over what is seen from many starts, and the shares of their basins below.
@@ -174,11 +147,11 @@ class Atlas:
             if stretch == number
         ]
         middle = own[len(own) // 2]
-        at = middle.parameter, self._up(middle, 0.0)
+        at = middle.parameter, self.state_of(middle, 0.0)
         axes.annotate(name, at, (4, 4), textcoords="offset points", color=colour)
 
-    def _up(self, point: Point, phase: float) -> float:
-        """The state (SI) of an orbit at a phase."""
+    def state_of(self, point: Point, phase: float) -> float:
+        """Return the state (SI) that the picture shows, of an orbit at a phase."""
         layout = point.orbit.layout
         assert layout is not None
         column = layout.column(self.state)
@@ -187,10 +160,8 @@ class Atlas:
 
     def _curve(self, axes: Any, sheet: Sheet, number: int, colour: str, name: int) -> None:
         """One line of a branch: the state in one of its periods, stable parts drawn through."""
-        points = list(sheet.branch)
-        across = np.array([point.parameter for point in points])
-        up = np.array([self._up(point, FORCED * number) for point in points])
-        stable = np.array([point.stable for point in points])
+        heights = np.array([self.state_of(point, FORCED * number) for point in sheet.branch])
+        across, up, stable = sheet.curve(heights)
         for kind, style in ((stable, "-"), (~stable, ":")):
             near = kind.copy()
             near[1:] |= kind[:-1]

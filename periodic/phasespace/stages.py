@@ -28,9 +28,9 @@ Stage = tuple[str, Callable[[], str]]
 class SearchInterrupted(KeyboardInterrupt):
     """Ctrl-C during a search; `found` is what was found until then, and what was not tried."""
 
-    def __init__(self, found: Motions) -> None:
+    def __init__(self, found: Any, what: str) -> None:
         super().__init__(
-            f"interrupted; the {len(found)} motions found so far are the `found` of this exception: "
+            f"interrupted; {what} the `found` of this exception: "
             f"`import sys; sys.last_value.found` where nothing caught it"
         )
         self.found = found
@@ -56,7 +56,8 @@ class Stages:
         except KeyboardInterrupt:
             left = [name for name, _ in stages[len(self.tried) :]]
             self.tried.append(f"interrupted; not tried, or not to the end: {', '.join(left)}")
-            raise SearchInterrupted(self.found()) from None
+            found = self.found()
+            raise SearchInterrupted(found, f"the {len(found)} motions so far are") from None
         return self.found()
 
     @property

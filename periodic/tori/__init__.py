@@ -3,7 +3,8 @@
 from periodic.tori.averages import average, in_time, surface
 from periodic.tori.combinations import Combinations, combinations
 from periodic.tori.stability import torus_multipliers
-from periodic.tori.torusbranch import TorusBranch, TorusPoint
+from periodic.tori.torusbranch import TorusBranch
+from periodic.tori.toruspoint import TorusPoint
 
 __all__ = [
     "Combinations",

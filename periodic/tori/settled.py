@@ -8,6 +8,7 @@ from typing import cast
 
 import numpy as np
 import scipy
+from threadpoolctl import threadpool_limits
 
 from periodic.checks import whole
 from periodic.conditions.phase import excited
@@ -156,7 +157,8 @@ class Settled:
         states = self._states(PERIODS * PER_PERIOD, period / PER_PERIOD)
         size = np.maximum(np.ptp(states, axis=0), 1e-12)
         sections = self._states(SECTIONS, period)
-        tried = [_fitted(states, size, turns, angles) for turns in _turns(sections, size)]
+        with threadpool_limits(limits=1):  # threads that wait for each other take ten times as long
+            tried = [_fitted(states, size, turns, angles) for turns in _turns(sections, size)]
         least = min((off for off, *_ in tried), default=np.inf)
         if least > NEAR:
             raise TorusError(

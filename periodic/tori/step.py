@@ -16,7 +16,7 @@ from periodic.tori.family import Family
 from periodic.tori.invariance import Unknowns
 from periodic.tori.section import Section
 from periodic.tori.stability import AT_ONE, across, crossing, torus_multipliers
-from periodic.tori.torusbranch import TorusPoint
+from periodic.tori.toruspoint import TorusPoint
 
 CROSSED = 1e-10
 """Part of a step to which folds and multipliers on the unit circle are located."""

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from periodic.results.interactive.pictures import Shown
 from periodic.system import System
+from periodic.tori.pages import torus_shown
 from periodic.tori.section import Section
 from periodic.tori.torusbranch import TorusBranch
 from periodic.tori.trace import traced
@@ -36,6 +38,10 @@ class Torus(Section):
     breaks : ndarray, shape (B,)
         Angles at which the section crosses a surface, as of a contact; none where it does not.
     """
+
+    def shown(self, system: System | None = None) -> Shown:
+        """Return what the page of it shows: see `per.page`."""
+        return torus_shown(self, system)
 
     def traced(
         self,

@@ -10,9 +10,12 @@ import numpy as np
 
 from periodic.display.htmltables import paragraph, table, with_unit
 from periodic.orbit.scheme import Array
+from periodic.results.interactive.pictures import Shown
 from periodic.results.plots.frame import dressed, fresh
 from periodic.results.point import Point
-from periodic.tori.section import Section
+from periodic.system import System
+from periodic.tori.pages import family_shown
+from periodic.tori.toruspoint import TorusPoint
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,36 +25,6 @@ SPECIAL = ("LP", "BP", "PD", "NS")
 
 SHOWN = 40
 """Most points that a table shows."""
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class TorusPoint:
-    """A torus of a family.
-
-    Parameters
-    ----------
-    torus : Section
-        The torus.
-    parameter : float
-        The parameter (SI).
-    multipliers : ndarray of complex, shape (n,)
-        Its multipliers, the largest first; see `per.tori.torus_multipliers`.
-    stable : bool
-        Whether motions beside it come to it.
-    label : str
-        "LP" at a fold of the family, "BP", "PD" and "NS" where a multiplier at 1, one at -1 or a pair comes
-        through the unit circle, "UZ" at a value asked for, "EP" at an end, else "".
-    """
-
-    torus: Section
-    parameter: float
-    multipliers: Array
-    stable: bool
-    label: str = ""
-
-    def __repr__(self) -> str:
-        kind = "stable" if self.stable else "unstable"
-        return f"TorusPoint({self.parameter:.9g}, {self.label or 'torus'} {kind}, {self.torus!r})"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -101,14 +74,14 @@ class TorusBranch(Sequence[TorusPoint]):
         rows = [self._row(point) for point in self.points[::step]]
         return table(self._headings, rows) + "".join(paragraph(stop) for stop in self.stops)
 
-    def _named(self, parameter: str) -> str:
-        """A parameter's name with its unit."""
+    def titled(self, parameter: str) -> str:
+        """Return a parameter's name with its unit."""
         known = {q.name: q.unit for q in self.points[0].torus.layout.parameters}
         return with_unit(parameter, known[parameter])
 
     @property
     def _headings(self) -> tuple[str, ...]:
-        names = [self._named(name) for name in (self.parameter, self.released) if name]
+        names = [self.titled(name) for name in (self.parameter, self.released) if name]
         return (*names, "rotation number", "size", "largest modulus", "stable", "angles", "tail", "")
 
     def _row(self, point: TorusPoint) -> tuple[str, ...]:
@@ -151,6 +124,12 @@ class TorusBranch(Sequence[TorusPoint]):
         """
         return [point for point in self.points if point.label == label]
 
+    def shown(self, system: System | None = None) -> Shown:
+        """Return what the page of it shows: see `per.page`."""
+        titles = [self.titled(name) for name in (self.parameter, self.released) if name]
+        said = [f"begins: {self.stops[0]}", f"ends: {self.stops[1]}"]
+        return family_shown(said, self.points, titles, self.released, system)
+
     def plot(self, axes: Axes | None = None) -> Axes:
         """Plot the size of the section over the parameter, stable tori drawn through, others dashed.
 
@@ -176,4 +155,4 @@ class TorusBranch(Sequence[TorusPoint]):
             if marked:
                 at = [point.parameter for point in marked], [point.torus.size for point in marked]
                 axes.plot(*at, "os^D"[k], color="C3", label=label)
-        return dressed(axes, self._named(self.parameter), "size of the section (scaled)")
+        return dressed(axes, self.titled(self.parameter), "size of the section (scaled)")

@@ -21,7 +21,8 @@ from periodic.tori.locking import kinds, orbits_beyond, passed, resonance
 from periodic.tori.section import Section, TorusError
 from periodic.tori.stability import stable, torus_multipliers
 from periodic.tori.step import Located, Step
-from periodic.tori.torusbranch import TorusBranch, TorusPoint
+from periodic.tori.torusbranch import TorusBranch
+from periodic.tori.toruspoint import TorusPoint
 
 FIRST, LONGEST, SHORTEST = 0.02, 0.1, 1e-6
 """Steps along the family: the first, the longest and the shortest, in ranges of the parameter."""

@@ -36,7 +36,7 @@ def write(template: str, file: Path, title: str, data: Mapping[str, Any]) -> Pat
     Parameters
     ----------
     template : str
-        "page" or "map": the stem of a template and of its script.
+        "page", "map" or "pictures": the stem of a template and of its script.
     file : Path
         The file.
     title : str

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from periodic.orbit.layout import layout_of
 from periodic.results.branch import Branch
 from periodic.results.interactive.content import content
 from periodic.results.interactive.library import write
 from periodic.results.interactive.mapped import map_content
+from periodic.results.interactive.pictures import Showable, pictured
 from periodic.results.plots.units import Units
 from periodic.results.point import Point
 from periodic.system import System, check_system
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def page(
-    branch: Branch | xr.Dataset,
+    branch: Branch | xr.Dataset | Showable,
     path: str | Path,
     *,
     system: System | None = None,
@@ -28,7 +29,7 @@ def page(
     units: Units | None = None,
     notes: Mapping[Point, str] | None = None,
 ) -> Path:
-    """Write a branch to one HTML file in which its orbits can be looked at.
+    """Write a branch, a map, an atlas or a torus to one HTML file in which it can be looked at.
 
     Pointing at the branch (or the keys left and right, or a finger) shows the orbit there: its motion over a
     period, the phase plane, the spectrum and the Floquet multipliers beside the unit circle; with its system
@@ -39,9 +40,10 @@ def page(
 
     Parameters
     ----------
-    branch : Branch or xarray.Dataset
+    branch : Branch, xarray.Dataset, Atlas, Torus or TorusBranch
         The branch, or a curve in two parameters; one with more than 600 points is thinned out, special points
-        kept. Or a map over one or two parameters, as `design_map` returns it, whose cells can be pointed at.
+        kept. Or a map over one or two parameters, as `design_map` returns it, whose cells can be pointed at;
+        an atlas, whose values can; tori, of which with their system also motion and spectrum are shown.
     path : str or Path
         The file, which ends in .html; one that is there is replaced.
     system : System, optional
@@ -70,12 +72,10 @@ def page(
         Where the file cannot be written.
     """
     file = Path(path)
-    if not isinstance(branch, Branch):
-        if not hasattr(branch, "data_vars"):
-            raise ValueError(f"branch is {branch!r}; it must be a Branch, as periodic.trace returns it")
-        return write("map", file, title or "Map", map_content(branch))
     if system is not None:
         check_system(system)
+    if not isinstance(branch, Branch):
+        return _of_another(branch, file, title, system)
     if not len(branch):
         raise ValueError(f"the branch has no points to show; it ended with: {branch.stop}")
     if system is not None:
@@ -83,6 +83,15 @@ def page(
     _check_notes(branch, notes or {})
     shown = content(branch, units or {}, system, notes)
     return write("page", file, title or f"Branch over {branch.parameter}", shown)
+
+
+def _of_another(shown: Any, file: Path, title: str, system: System | None) -> Path:
+    """Write the page of what is no branch."""
+    if isinstance(shown, Showable):
+        return write("pictures", file, title or type(shown).__name__, pictured(shown.shown(system)))
+    if not hasattr(shown, "data_vars"):
+        raise ValueError(f"branch is {shown!r}; it must be a Branch, as periodic.trace returns it")
+    return write("map", file, title or "Map", map_content(shown))
 
 
 def _check_notes(branch: Branch, notes: Mapping[Point, str]) -> None:

@@ -115,7 +115,7 @@ def _alike(judged: Attractor, periods: int, sections: Any) -> bool:
 
 
 def _sorted(sections: Any) -> list[Attractor]:
-    """The attractors of motions (S, KEPT, 2), by what they are at the end; all that do not come back are one."""
+    """The attractors of motions (S, KEPT, 2) by what they are at the end; what does not come back is one."""
     total, left = len(sections), sections[np.isfinite(sections).all(axis=(1, 2))]
     found: list[Attractor] = []
     for periods in range(1, MOST + 1):

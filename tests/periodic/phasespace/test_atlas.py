@@ -55,8 +55,12 @@ def test_words_and_picture(tmp_path: Path) -> None:
     assert repr(found) == "Atlas(1 branches over Omega from 0.56 to 0.96)"
     lines = str(found).splitlines()
     assert lines[1].startswith("1: one period; bound reached")
-    assert lines[2].startswith("   1a attracts ") and lines[3].startswith("   1b attracts ")
-    assert any(line.startswith("   LP at 0.8358376") for line in lines)
+    assert lines[2].startswith("   1a is stable from 0.56 to LP fold at 0.83583")
+    assert (
+        lines[3].startswith("   1b is stable from LP fold at 0.59815")
+        and " to 0.96, and attracts " in lines[3]
+    )
+    assert lines[4].startswith("   GR grazing at 0.8284") and lines[4].endswith(", LP fold at 0.598153117")
     figure = found.plot()
     upper, lower = figure.axes
     assert (upper.get_ylabel(), lower.get_xlabel()) == ("x at tau = 0", "Omega (rad/s)")

@@ -15,13 +15,14 @@ from support.attacks import ATTACKS, hostile
 from support.pages import held, opened
 
 import periodic as per
+from periodic.results.interactive.pictures import Line, Picture, Place, Shown, Style
 
 by_attack = pytest.mark.parametrize("attack", ATTACKS.values(), ids=ATTACKS.keys())
 
 OWN = {
     *("html", "head", "meta", "title", "style", "body", "header", "main", "script", "div", "p", "h1", "b"),
     *("label", "select", "option", "button", "input", "svg", "g", "defs", "clipPath", "path", "rect"),
-    *("circle", "text", "tspan", "image", "line", "linearGradient", "stop"),
+    *("circle", "text", "tspan", "image", "line", "linearGradient", "stop", "ul", "li"),
 }
 """All elements that a page makes; of Plotly's, `image` is a heat map."""
 
@@ -108,6 +109,36 @@ def test_map(attack: str, browser: Any, tmp_path: Path) -> None:
         assert texts(page, ".xtitle") == [shown(f"{attack} ({attack})")]
         assert texts(page, ".ytitle") == [shown(f"{up} ({attack})")]
         assert shown(f"{number} ({attack})") in texts(page, "#branch text")
+
+
+class Hostile:
+    """What says a text wherever it can say one."""
+
+    def __init__(self, attack: str) -> None:
+        self.attack = attack
+
+    def shown(self, system: Any = None) -> Shown:
+        """A picture over a parameter with one place, and one there."""
+        said, at = self.attack, np.array([1.0, 2.0])
+        lines = [Line(at, at, style, said, 0, (0, 1), (said, said)) for style in Style]
+        picture = Picture(said, said, lines)
+        return Shown([said], [picture], [Place(1.0, [said], [picture]), Place(2.0, [f"{said} 2"], [picture])])
+
+
+@by_attack
+def test_pictures(attack: str, browser: Any, tmp_path: Path) -> None:
+    """Assert the same of pictures, and of what is said of their places."""
+    with opened(browser, per.page(Hostile(attack), tmp_path / "page.html", title=attack)) as page:
+        page.keyboard.press("ArrowRight")
+        check(page)
+        assert shown(page.title()) == shown(attack) and texts(page, "h1") == [shown(attack)]
+        assert texts(page, "#told li") == [shown(attack)] and texts(page, "#said li") == [
+            shown(f"{attack} 2")
+        ]
+        for axis in (".xtitle", ".ytitle"):
+            assert texts(page, f"#overviews {axis}") == texts(page, f"#places {axis}") == [shown(attack)]
+        assert set(texts(page, "#overviews .textpoint")) == {shown(attack)}
+        assert set(texts(page, "#overviews .legendtext")) == {shown(attack)}
 
 
 @pytest.mark.parametrize("name", ["<img src=x onerror=alert(1)>", "@@DATA@@ & {{ data }}", "javascript:x"])
