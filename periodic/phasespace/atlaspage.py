@@ -15,7 +15,7 @@ from periodic.phasespace.stretches import LETTERS, PLAIN
 from periodic.results.interactive.pictures import Line, Picture, Place, Shown, Style
 from periodic.results.point import Point
 
-FINE = 500
+FINE = 2e-3
 """Dots that differ by less than this part of the range are one."""
 
 MOST = 400
@@ -63,7 +63,7 @@ def _nearest(atlas: Charted, values: Array) -> list[int]:
 def _dots(atlas: Charted) -> Line:
     """What is seen from many starts, each dot once."""
     across, up = atlas.dots.T
-    fine = np.round(up / max(np.ptp(up) if len(up) else 0.0, np.finfo(float).tiny) * FINE)
+    fine = np.round(up / max(np.ptp(up) if len(up) else 0.0, np.finfo(float).tiny) / FINE)
     _, first = np.unique(np.column_stack([across, fine]), axis=0, return_index=True)
     name = "settled motions"
     return Line(across[first], up[first], Style.DOTS, name, -1, _nearest(atlas, across[first]))

@@ -24,7 +24,7 @@ CHANGED = {
         *("_Pieces", "NativeSteps", "Motion", "_Oscillating", "_Border", "_Pair", "_Grazing", "_Peak"),
         *("Work", "_Known", "Execution", "Run", "Continuation", "ReturnMap", "Transient", "Start"),
         *("Foresight", "_Way", "_Ranges", "March", "Draft", "Tiling"),
-        *("Count", "Follow", "_Search", "Known", "Settling", "Sorted", "OneWay"),
+        *("Count", "Follow", "_Search", "Known", "Settling", "Stages", "Sorted", "OneWay"),
     },
 }
 """The dataclasses that change as they are used: those of all others are values."""
