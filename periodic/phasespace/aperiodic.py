@@ -68,13 +68,18 @@ class Attractors:
     found: list[Attractor] = field(default_factory=list)
 
     def sorted_of(self, settling: Settling) -> Any:
-        """Return of each motion that is left on which of `found` it is."""
+        """Return of each motion that is left on which of `found` it is; -1 of those that come back later."""
         labels = []
         for i, path in zip(settling.left, settling.sections, strict=True):
             mine = [k for k, one in enumerate(self.found) if one.has(path, self.unit)]
             if not mine:
+                made = self._described(settling, int(i))
+                if not isinstance(made, Attractor):
+                    settling.arrived(int(i), made)
+                    labels.append(-1)
+                    continue
                 mine = [len(self.found)]
-                self.found.append(self._described(settling.y[i], settling.modes[i]))
+                self.found.append(made)
             labels.append(mine[0])
         return np.array(labels, dtype=int)
 
@@ -88,21 +93,28 @@ class Attractors:
         """Return whether a motion is on the attractor that is known by those sections."""
         return any(one.has(sections, self.unit) for one in self.found if one.sections is those)
 
-    def _described(self, y: Array, modes: Any) -> Attractor:
+    def _described(self, settling: Settling, i: int) -> Attractor | int:
         """A motion on an attractor, followed further: chaotic where neighbours part, whatever averages say.
+
+        Where it comes back after all, as after chaos for a while, the index of the orbit on which it settles.
 
         Chaos in bands that a motion visits in turn has averages as good as a torus'.
         """
-        sections, y, modes, smooth = np.zeros((0, len(self.unit))), y[None], modes[None], False
+        y, modes = settling.y[i][None], settling.modes[i][None]
+        sections, smooth, targets = np.zeros((0, len(self.unit))), False, settling.orbits.targets()
         width = self.clock.stretch * self.clock.between
         for length in LENGTHS:
-            path = self.crowd.run(y, length - len(sections), width, modes=modes, keep=True)
+            path = self.crowd.run(y, length - len(sections), width, modes=modes, keep=True, targets=targets)
             assert path.sections is not None
+            if path.label[0] >= 0:
+                return int(path.label[0])
             sections = np.concatenate([sections, path.sections[0, 1:, : len(self.unit)]])
             if path.outcome[0] != FOLLOWED:
                 why = "it was lost when followed further"
                 return Attractor(sections[:0], Sort.OPEN, math.nan, math.nan, why)
             y, modes = path.ends, path.modes
+            if (orbit := settling.settled(y[0], modes[0], sections)) is not None:
+                return orbit
             size = np.ptp(sections, axis=0)
             smooth = digits(sections, np.where(size > 0, size, 1.0)) > DIGITS
             if smooth:

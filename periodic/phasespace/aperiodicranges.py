@@ -1,4 +1,4 @@
-"""Where over a parameter motions are that do not come back: tori with where they are born, and chaos."""
+"""Where over a parameter motions are that do not come back: tori, where they are born, chaos, escape."""
 
 from __future__ import annotations
 
@@ -26,6 +26,11 @@ def aperiodic_ranges(values: Array, found: Sequence[Motions], branches: Sequence
             near = values[max(first - 1, 0)], values[min(last + 1, len(values) - 1)]
             born = [f"{birth:.9g}" for birth in births if sort == Sort.TORUS and near[0] <= birth <= near[1]]
             yield f"{sort} {where}{told}" + (f"; NS at {' and '.join(born)}" if born else "")
+    for name, counted in (("grows beyond all bounds", "diverged"), ("undecided", "undecided")):
+        shares = 100 * np.array([getattr(motions, counted) / motions.starts for motions in found])
+        for first, last in _runs(list(shares > 0)):
+            own, where = shares[first : last + 1], _at(values[first], values[last])
+            yield f"{name} {where}: {own.min():.1f} to {own.max():.1f} % of the box"
 
 
 def _runs(there: Sequence[bool]) -> Iterator[tuple[int, int]]:

@@ -116,5 +116,4 @@ def _drawn(chart: Chart, column: int) -> Atlas:
         tuple(sheets),
         np.concatenate([np.zeros((0, 2)), *chart.dots]),
         chart.remarks,
-        chart.units[:done],
     )

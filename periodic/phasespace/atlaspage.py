@@ -38,8 +38,6 @@ class Charted(Protocol):
     @property
     def dots(self) -> Array: ...
     @property
-    def units(self) -> Array: ...
-    @property
     def box(self) -> dict[str, tuple[float, float]]: ...
 
     def state_of(self, point: Point, phase: float) -> float:
@@ -111,7 +109,7 @@ def _place(atlas: Charted, k: int) -> Place:
     said = [f"{atlas.across} = {atlas.values[k]:.9g}", *_rows(found.motions), *found.tried]
     if len(names) < 2:
         return Place(float(atlas.values[k]), said)
-    lines = [_states(atlas, k, number, motion) for number, motion in enumerate(found)]
+    lines = [_states(found.units, number, motion) for number, motion in enumerate(found)]
     return Place(
         float(atlas.values[k]),
         said,
@@ -129,8 +127,8 @@ def _rows(motions: Sequence[Motion]) -> list[str]:
     return [", ".join(filter(None, texts)) for texts in each]
 
 
-def _states(atlas: Charted, k: int, number: int, motion: Motion) -> Line:
+def _states(units: Array, number: int, motion: Motion) -> Line:
     """A motion once in each period: small dots where it does not come back, circles where unstable."""
-    states = (motion.sections[-MOST:] * atlas.units[k])[:, :2]
+    states = (motion.sections[-MOST:] * units)[:, :2]
     style = Style.DOTS if not motion.comes_back else Style.MARKS if motion.stable else Style.OPEN
     return Line(states[:, 0], states[:, 1], style, f"{number + 1}", number)

@@ -70,11 +70,6 @@ class Chart:
             show(1, f"diagram at {value:.6g}")
 
     @property
-    def units(self) -> Array:
-        """SI values of one internal unit of each state, at each value, (K, n)."""
-        return np.array([self._there(float(value)).box.unit for value in self.at])
-
-    @property
     def remarks(self) -> tuple[str, ...]:
         """What could not be done, in words."""
         told = list(self.lost)

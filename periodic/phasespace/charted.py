@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -46,8 +46,6 @@ class Atlas:
         The diagram beneath: values, and the state (SI) of motions that have settled from a few starts.
     remarks : tuple of str
         What could not be done, in words.
-    units : ndarray, shape (K, n)
-        SI values of one internal unit of each state, at each value.
     """
 
     parameter: str
@@ -59,7 +57,6 @@ class Atlas:
     sheets: tuple[Sheet, ...]
     dots: Array
     remarks: tuple[str, ...] = ()
-    units: Array = field(default_factory=lambda: np.zeros((0, 0)), repr=False)
 
     def __repr__(self) -> str:
         return (

@@ -29,6 +29,12 @@ PART = 0.1
 RETURNS = 0.05
 """The same between a free motion and itself a period later, in its own size."""
 
+NEARLY = 0.1
+"""The same of a motion that may settle slowly."""
+
+LONGEST = 64
+"""Most periods after which a motion is found to come back that was followed to the end."""
+
 STILL = 1e-7
 """Range of a motion, in units of the states, that is at rest."""
 
@@ -65,6 +71,12 @@ class Clock(Protocol):
     def lag(self, path: Array, unit: Array) -> float:
         """After how many looks a motion (K, n) comes back: -1 for one at rest, 0 where it does not."""
 
+    def nearly(self, path: Array) -> bool:
+        """Whether it nearly comes back, measured by its own range."""
+
+    def patient(self) -> Clock:
+        """The same for motions that have been followed to the end, and may come back after longer."""
+
     def off(self, path: Array, lag: float, unit: Array) -> float:
         """How far it then is from where it was."""
 
@@ -99,6 +111,14 @@ class Forced:
         """See `Clock`."""
         return period(path, self.periods, unit, NEAR)
 
+    def nearly(self, path: Array) -> bool:
+        """See `Clock`."""
+        return period(path, self.periods, _range(path), NEARLY) > 0
+
+    def patient(self) -> Clock:
+        """See `Clock`."""
+        return Patient(self.completion, self.periods)
+
     def off(self, path: Array, lag: float, unit: Array) -> float:
         """See `Clock`."""
         return apart(path, int(lag), unit)
@@ -128,6 +148,15 @@ class Forced:
     def same(self, first: Array, second: Array, unit: Array, near: float) -> bool:
         """See `Clock`."""
         return same(first, second, unit, near)
+
+
+@dataclass(frozen=True, eq=False)
+class Patient(Forced):
+    """The same, for orbits of up to LONGEST periods that motions have settled on, measured by their range."""
+
+    def lag(self, path: Array, unit: Array) -> float:
+        """See `Clock`."""
+        return period(path, LONGEST, np.minimum(unit, _range(path)), NEAR)
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +192,15 @@ class Free:
             return -1.0
         time = return_time(path[-self.first :], np.maximum(np.ptp(last, axis=0), STILL * unit), RETURNS)
         return 0.0 if math.isnan(time) else time
+
+    def nearly(self, path: Array) -> bool:
+        """See `Clock`."""
+        last = path[-self.first :]
+        return not math.isnan(return_time(last, _range(last), NEARLY))
+
+    def patient(self) -> Clock:
+        """See `Clock`."""
+        return self
 
     def off(self, path: Array, lag: float, unit: Array) -> float:
         """See `Clock`."""
@@ -203,6 +241,12 @@ class Free:
         return all(
             float(np.max(KDTree(a).query(b, p=np.inf)[0])) < near for a, b in ((one, other), (other, one))
         )
+
+
+def _range(path: Array) -> Array:
+    """The range of each state of a motion (K, n), 1 where it does not change."""
+    size = np.ptp(path, axis=0)
+    return np.where(size > 0, size, 1.0)
 
 
 def _how(motion: Motion) -> str:

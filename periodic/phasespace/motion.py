@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
@@ -135,6 +135,8 @@ class Motions(Sequence[Motion]):
         How many grew beyond all bounds, and of how many it is not known where they lead.
     tried : tuple of str
         What was tried, in words.
+    units : ndarray, shape (n,)
+        SI values of one internal unit of each state.
     """
 
     motions: tuple[Motion, ...]
@@ -144,6 +146,7 @@ class Motions(Sequence[Motion]):
     diverged: int = 0
     undecided: int = 0
     tried: tuple[str, ...] = ()
+    units: Array = field(default_factory=lambda: np.zeros(0))
 
     def __len__(self) -> int:
         return len(self.motions)
@@ -185,6 +188,21 @@ class Motions(Sequence[Motion]):
         if not 0 < share < 1:
             raise ValueError(f"share is {share!r}; it must lie between 0 and 1")
         return float((1 - share) ** (self.starts - self.undecided))
+
+    def state_of(self, motion: Motion) -> dict[str, float]:
+        """Return the states (SI) of a motion at tau = 0, by name.
+
+        Parameters
+        ----------
+        motion : Motion
+            One of these.
+
+        Returns
+        -------
+        dict
+            Of a motion that does not come back those of some moment.
+        """
+        return dict(zip(self.box, (self.units * motion.sections[0]).tolist(), strict=True))
 
     def __str__(self) -> str:
         rows = [HEADINGS, *self._rows]

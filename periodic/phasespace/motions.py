@@ -47,7 +47,7 @@ def motions(
     starts : int
         How many motions start.
     settle : int
-        Most periods that a motion is followed.
+        Most periods that a motion is followed, but for those that then nearly come back.
     places : int
         Places from which Newton's method starts for each number of periods; 0 for stable motions alone.
     along : mapping of str to (float, float), optional

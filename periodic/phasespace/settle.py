@@ -37,6 +37,9 @@ KEPT = 32
 LOOKS = 256
 """States of a motion by which it is told whether it comes nearer to an orbit."""
 
+LONGER = 4
+"""How many times as long those are followed that nearly come back when all others are done."""
+
 COMPLETIONS = 24
 """Most motions that are completed after a block."""
 
@@ -84,6 +87,36 @@ class Settling:
             done, block = done + block, 2 * block
             self._complete()
             self._spirals()
+        self.clock, usual = self.clock.patient(), self.clock
+        self._arrive()
+        self._wait()
+        self.clock = usual
+
+    def _arrive(self) -> None:
+        """Complete what comes back, and let others arrive there, until that adds no more."""
+        before = -1
+        while len(self.left) and len(self.orbits) != before:
+            before = len(self.orbits)
+            self._complete()
+            if len(self.orbits) != before:
+                self._follow(min(KEPT * self.clock.first, self.longest))
+
+    def _wait(self) -> None:
+        """Follow those further that nearly come back: they may settle slowly, or lock."""
+        slow = np.array([self.clock.nearly(path) for path in self.sections], dtype=bool)
+        if not slow.any():
+            return
+        rest, paths = self.left[~slow], self.sections[~slow]
+        held = [held for held, one in zip(self.held, slow, strict=True) if not one]
+        self.left, self.sections = self.left[slow], self.sections[slow]
+        self._follow(LONGER * self.longest)
+        self._arrive()
+        self._spirals()
+        kept = min(paths.shape[1], self.sections.shape[1]) if len(self.left) else paths.shape[1]
+        self.left = np.concatenate([rest, self.left])
+        last = self.sections[:, self.sections.shape[1] - kept :].reshape(-1, kept, self.n)
+        self.sections = np.concatenate([paths[:, paths.shape[1] - kept :], last])
+        self.held = held + self.held
 
     def _follow(self, count: int) -> None:
         """Follow what is left for some stretches; those that arrive at a stable orbit, or diverge, are done.
@@ -149,23 +182,45 @@ class Settling:
                 break
             tried.append(own)
             if not self.orbits.near(own[-1], NEAR):
-                ended[k] = self._one(k, lags[k], off[k])
+                motion = int(self.left[k])
+                ended[k] = self._one(self.y[motion], self.modes[motion], own, self.held[k], lags[k], off[k])
         self._end(ended)
 
-    def _one(self, k: int, lag: float, off: float) -> int:
+    def settled(self, y: Array, modes: Any, path: Array) -> int | None:
+        """Return on which orbit a motion at y (w,) with states (K, n) has settled; a new one is completed."""
+        clock = self.clock.patient()
+        lag = clock.lag(path, self.unit) if clock.whole else 0.0
+        if not lag:
+            return None
+        states = path[-round(lag) :]
+        self._one(y, modes, states, frozenset(), lag, clock.off(path, lag, self.unit))
+        near = NEAR * PART
+        alike = (clock.same(one.sections, states, self.unit, near) and one.stable for one in self.orbits.each)
+        return next((k for k, same in enumerate(alike) if same), None)
+
+    def arrived(self, motion: int, orbit: int) -> None:
+        """Let a motion end at an orbit."""
+        self.label[motion] = orbit
+        self.orbits.each[orbit].starts += 1
+
+    def _one(self, y: Array, modes: Any, states: Array, held: frozenset[int], lag: float, off: float) -> int:
         """Complete one motion; where that fails one that has settled is known by its simulation.
 
         Returns which of the orbits it is if there is no doubt: where friction holds something; else -1.
         """
-        motion, held = int(self.left[k]), self.held[k]
-        point, added = self.clock.complete(self.y[motion], list(self.modes[motion]), lag), False
+        point, added = self.clock.complete(y, list(modes), lag), False
         if point is not None:
             added = self.add(point, lag, "", held)
-        elif off < SETTLED:
-            states = self.sections[k][-max(round(lag), 1) :]
+        if off < SETTLED and not (held or (point is not None and self._is(point, lag, states))):
             why = "seen in simulations; no orbit was found beside it"
             added = self.orbits.add(Known(states, max(int(lag), 0), None, "", why=why, held=held), ALIKE)
         return len(self.orbits) - 1 if held and added else -1
+
+    def _is(self, point: Point, lag: float, states: Array) -> bool:
+        """Whether an orbit is the motion from which it was completed, by its states; not one nearby."""
+        if not self.clock.whole:
+            return True
+        return self.clock.same(self.clock.known(point, lag, self.unit, "").sections, states, self.unit, NEAR)
 
     def add(self, point: Point, lag: float, found: str, held: frozenset[int] = frozenset()) -> bool:
         """Add an orbit unless it is known; whether it was added."""

@@ -109,6 +109,7 @@ class Stages:
             len(settling.gone),
             undecided,
             tuple(text for text in self.tried if text),
+            search.box.unit,
         )
 
     def _settled(self) -> str:

@@ -14,11 +14,13 @@ from typing import Annotated
 import typer
 from typer._click.exceptions import ClickException
 
+from .atlas.command import atlas
 from .doctor.command import doctor
 from .export.command import export
 from .linear.command import linear
 from .map.command import map_
 from .modes.command import modes
+from .motions.command import motions
 from .options import BAD_INPUT, DONE, say
 from .parts.command import new, parts
 from .prove.command import prove
@@ -31,7 +33,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (scenes, trace, linear, modes, prove, export, parts, new, doctor):
+for command in (scenes, trace, linear, modes, motions, atlas, prove, export, parts, new, doctor):
     app.command()(command)
 app.command("map")(map_)
 

@@ -74,17 +74,19 @@ def tell_written(files: Sequence[Path]) -> None:
     tell("written: " + ", ".join(map(str, files)))
 
 
-def pairs(changes: Sequence[str] | None) -> tuple[tuple[str, str], ...]:
-    """Return the keys and values of --set. Raises InputError."""
-    return tuple(map(_pair, changes or ()))
+def pairs(
+    given: Sequence[str] | None, option: str = "--set", form: str = "KEY=VALUE, as in film.beta=20"
+) -> tuple[tuple[str, str], ...]:
+    """Return the keys and values of an option of that form. Raises InputError."""
+    return tuple(_pair(text, option, form) for text in given or ())
 
 
-def _pair(change: str) -> tuple[str, str]:
+def _pair(text: str, option: str, form: str) -> tuple[str, str]:
     from symbolic.scenes.errors import refused
 
-    key, equals, value = change.partition("=")
+    key, equals, value = text.partition("=")
     if not (key and equals):
-        raise refused("--set", change, "KEY=VALUE, as in film.beta=20")
+        raise refused(option, text, form)
     return key.strip(), value.strip()
 
 

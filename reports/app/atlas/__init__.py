@@ -1,0 +1,1 @@
+"""The command `orbitrace atlas`: everything that a scene can do over its range."""

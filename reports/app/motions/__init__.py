@@ -1,0 +1,1 @@
+"""The command `orbitrace motions`: every motion of a scene at one value."""
