@@ -33,6 +33,9 @@ SPACINGS = 4.0
 ALIKE = 1e-2
 """... or this part of the attractor's size: the points of a torus near a resonance leave gaps."""
 
+SAME = 1e-6
+"""How near rotation numbers of one torus are."""
+
 SHARE = 0.9
 """Part of a motion's points that must be on an attractor on which it is."""
 
@@ -57,6 +60,15 @@ class Attractor:
         near = np.asarray(tree.query(sections[-POINTS:] / unit)[0])
         return bool((near < max(SPACINGS * np.quantile(own, 0.95), ALIKE * size)).mean() > SHARE)
 
+    def alike(self, other: Attractor, unit: Array) -> bool:
+        """Return whether another is the same torus, of which motions near a resonance show other points."""
+        if not (self.sort == other.sort == Sort.TORUS and abs(self.rotation - other.rotation) < SAME):
+            return False
+        both = [one.sections / unit for one in (self, other)]
+        near = ALIKE * float(np.ptp(both[0], axis=0).max())
+        means, sizes = ([f(states, axis=0) for states in both] for f in (np.mean, np.ptp))
+        return bool(max(np.abs(each[0] - each[1]).max() for each in (means, sizes)) < near)
+
 
 @dataclass(frozen=True, eq=False)
 class Attractors:
@@ -78,8 +90,10 @@ class Attractors:
                     settling.arrived(int(i), made)
                     labels.append(-1)
                     continue
-                mine = [len(self.found)]
-                self.found.append(made)
+                mine = [k for k, one in enumerate(self.found) if one.alike(made, self.unit)]
+                if not mine:
+                    mine = [len(self.found)]
+                    self.found.append(made)
             labels.append(mine[0])
         return np.array(labels, dtype=int)
 

@@ -30,7 +30,8 @@ def aperiodic_ranges(values: Array, found: Sequence[Motions], branches: Sequence
         shares = 100 * np.array([getattr(motions, counted) / motions.starts for motions in found])
         for first, last in _runs(list(shares > 0)):
             own, where = shares[first : last + 1], _at(values[first], values[last])
-            yield f"{name} {where}: {own.min():.1f} to {own.max():.1f} % of the box"
+            low, high = f"{own.min():.1f}", f"{own.max():.1f}"
+            yield f"{name} {where}: {low if low == high else f'{low} to {high}'} % of the box"
 
 
 def _runs(there: Sequence[bool]) -> Iterator[tuple[int, int]]:

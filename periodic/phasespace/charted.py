@@ -68,8 +68,7 @@ class Atlas:
         lines = [repr(self)]
         for k, sheet in enumerate(self.sheets, 1):
             lines.append(f"{k}: {sheet.name}; {sheet.branch.stop}")
-            each = zip(LETTERS, sheet.shares, ends(sheet.branch), strict=False)
-            lines += [self._stretch(f"{k}{letter}", shares, own) for letter, shares, own in each]
+            lines += self._stretches(k, sheet)
             special = [p for p in sheet.branch if str(p.label) not in PLAIN]
             said = ", ".join(str(End(point.parameter, str(point.label))) for point in special)
             lines += [f"   {said}"] if said else []
@@ -77,14 +76,25 @@ class Atlas:
         lines += aperiodic_ranges(self.values, self.motions, branches)
         return "\n".join([*lines, *self.remarks])
 
+    def _stretches(self, k: int, sheet: Sheet) -> list[str]:
+        """Its stable stretches in words; one that is gone through once more, a period later, once."""
+        lines, known = list[str](), list[tuple[float, float]]()
+        for letter, shares, own in zip(LETTERS, sheet.shares, ends(sheet.branch), strict=False):
+            where = own[0].value, own[1].value
+            if (shares > 0).any() or not any(np.allclose(where, other, rtol=1e-7) for other in known):
+                lines.append(self._stretch(f"{k}{letter}", shares, own))
+            known.append(where)
+        return lines
+
     def _stretch(self, name: str, shares: Array, own: tuple[End, End]) -> str:
         """Where a stable stretch begins and ends, and what part of the box leads to it, in words."""
         where = f"   {name} is stable from {own[0]} to {own[1]}"
         there = np.flatnonzero(shares > 0)
         if not len(there):
             return where
-        low, high = 100 * shares[there].min(), 100 * shares.max()
-        return f"{where}, and attracts {low:.1f} to {high:.1f} % of the box"
+        low, high = f"{100 * shares[there].min():.1f}", f"{100 * shares.max():.1f}"
+        share = low if low == high else f"{low} to {high}"
+        return f"{where}, and attracts {share} % of the box"
 
     @property
     def box(self) -> dict[str, tuple[float, float]]:

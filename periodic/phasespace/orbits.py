@@ -38,6 +38,9 @@ MOST_ROUNDS, SAME = 8, 1e-4
 INTERVALS = 20
 """Intervals of the mesh of an orbit that is looked for about a state at rest."""
 
+FINER = (1, 100, 10_000)
+"""How many times finer tolerances are with which an orbit is looked for, one after the other."""
+
 BESIDE = 1e-3
 """How wide the range of a parameter is in which one orbit is found, as a part of its value."""
 
@@ -131,7 +134,27 @@ class Completion:
     def _first(
         self, guess: Orbit, determined: Mapping[str, Condition], method: Equilibrium | None
     ) -> Point | None:
-        """The first point of a branch from a guess."""
+        """The orbit near a guess, on finer first meshes where others lead nowhere or to one of fewer periods.
+
+        Raises RepeatsError where all that lead anywhere lead there.
+        """
+        repeats: RepeatsError | None = None
+        for finer in FINER:
+            try:
+                point = self._tried(guess, determined, method, self.tolerance / finer)
+            except RepeatsError as error:
+                repeats = error
+                continue
+            if point is not None:
+                return point
+        if repeats is not None:
+            raise repeats
+        return None
+
+    def _tried(
+        self, guess: Orbit, determined: Mapping[str, Condition], method: Equilibrium | None, tol: float
+    ) -> Point | None:
+        """The first point of a branch from a guess, where it is at the guess's parameters."""
         name, bounds = self._beside()
         with contextlib.suppress(*FAILURES):
             branch = traced(
@@ -140,12 +163,12 @@ class Completion:
                 (min(bounds), max(bounds)),
                 start=bounds[0],
                 guess=guess,
-                tol=self.tolerance,
+                tol=tol,
                 determined=determined,
                 method=method,
                 control=ArclengthControl(max_points=1),
             )
-            if len(branch):
+            if len(branch) and branch[0].parameter == bounds[0]:
                 return branch[0]
         return None
 

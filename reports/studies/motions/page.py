@@ -8,11 +8,12 @@ from reports.studies.motions.basins import BASINS
 from reports.studies.motions.disc import DISC
 from reports.studies.motions.judged import JUDGED
 from reports.studies.motions.known import KNOWN
+from reports.studies.motions.rub import RUB
 from reports.studies.motions.tori import TORI
 from reports.studies.pages.page import Page
 
 REPORT = Page(
     name="motions",
     folder=Path(__file__).parent,
-    sections={"judged": JUDGED, "known": KNOWN, "disc": DISC, "basins": BASINS, "tori": TORI},
+    sections={"judged": JUDGED, "known": KNOWN, "disc": DISC, "basins": BASINS, "tori": TORI, "rub": RUB},
 )

@@ -120,5 +120,5 @@ def test_ranges_of_what_does_not_come_back() -> None:
         "torus from 2 to 3, rotation number 0.25 to 0.3; NS at 1.5",
         "chaotic from 3 to 4, Lyapunov exponent 0.5 1/s",
         "grows beyond all bounds from 1 to 2: 20.0 to 100.0 % of the box",
-        "undecided at 4: 10.0 to 10.0 % of the box",
+        "undecided at 4: 10.0 % of the box",
     ]
