@@ -12,6 +12,9 @@ import scipy
 
 import periodic as per
 import symbolic as sym
+from periodic.phasespace.crowd import Crowd
+from reports.studies.motions.rub import BOX as RUB_BOX
+from reports.studies.motions.rub import rotor
 
 pytestmark = pytest.mark.usefixtures("users_kernels")
 
@@ -64,3 +67,28 @@ def test_slow_motions_are_waited_for() -> None:
     (motion,) = found
     assert (motion.periods, motion.starts, motion.stable) == (3, 16, True)
     assert abs(motion.point.multipliers[0]) == pytest.approx(0.9933, abs=1e-4)
+
+
+def test_orbit_where_a_first_mesh_leads_elsewhere() -> None:
+    """Assert the orbit of a rub at the speed asked for, with the multipliers of the motion's own tangents."""
+    found = per.motions(rotor(), {"speed": 1.25}, box=RUB_BOX, starts=8, places=0, periods=2)
+    (cycle,) = [motion for motion in found.stable if motion.periods == 1 and motion.starts]
+    names = [p.name for p in cycle.orbit.layout.parameters]
+    assert cycle.orbit.parameter[names.index("speed")] == 1.25 and cycle.why == ""
+    assert cycle.orbit.parameter.tolist() == list(found.values.values())
+    crowd = Crowd(rotor(), cycle.orbit.parameter, 1e-11)
+    y = crowd.begin(cycle.sections)
+    after = crowd.run(y, 1, 2 * math.pi, tangents=crowd.tangents(y), raw=True)
+    assert after.ends[0] == pytest.approx(y[0], abs=1e-7)
+    own = np.sort(np.abs(np.linalg.eigvals(after.tangents[0][:, :4])))
+    assert own == pytest.approx(np.sort(np.abs(cycle.point.multipliers)), abs=1e-6)
+
+
+def test_torus_near_a_resonance_is_one() -> None:
+    """Assert one torus, 1.2e-6 from 25/84, whose motions show 84 points each, as Newton's method has it."""
+    found = per.motions(rotor(), {"speed": 1.7}, box=RUB_BOX, starts=32, places=0, periods=2, settle=1000)
+    tori = [motion for motion in found if motion.sort == per.phasespace.Sort.TORUS]
+    torus = per.settled_torus(rotor(), {"speed": 1.7}, start={"x": 0.9})
+    turns = min(torus.rotation_number, 1 - torus.rotation_number)
+    assert len(tori) == 1 and tori[0].rotation == pytest.approx(turns, abs=1e-7)
+    assert abs(turns - 25 / 84) < 2e-6
