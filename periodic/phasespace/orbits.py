@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import cast
@@ -40,6 +41,9 @@ INTERVALS = 20
 
 FINER = (1, 100, 10_000)
 """How many times finer tolerances are with which an orbit is looked for, one after the other."""
+
+ROUNDED = 1e-9
+"""Relative difference of a parameter from itself, in other units and back."""
 
 BESIDE = 1e-3
 """How wide the range of a parameter is in which one orbit is found, as a part of its value."""
@@ -168,7 +172,7 @@ class Completion:
                 method=method,
                 control=ArclengthControl(max_points=1),
             )
-            if len(branch) and branch[0].parameter == bounds[0]:
+            if len(branch) and math.isclose(branch[0].parameter, bounds[0], rel_tol=ROUNDED):
                 return branch[0]
         return None
 
