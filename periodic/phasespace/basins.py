@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from periodic.phasespace.motion import Motion, Motions, Sort, interval
 from periodic.phasespace.partition import Basins
 from periodic.phasespace.picture import Elsewhere
 from periodic.phasespace.search import Search, search_of
+from periodic.phasespace.stages import SearchInterrupted
 from periodic.system import System
 
 AT_ONCE = 8192
@@ -73,6 +74,8 @@ def basins(
     ------
     ValueError
         For names, numbers, ranges and systems that are not allowed.
+    SearchInterrupted
+        For Ctrl-C: its `found` are the basins as far as they are known.
     """
     search = search_of(system, values, box, periods, whole("starts", starts), settle, 0, seed, tol)
     if plane is None:
@@ -91,7 +94,7 @@ def basins(
     counted = int((labels != Elsewhere.BEHIND).sum())
     named = tuple(_counted(every[k], int((labels == place).sum()), counted) for place, k in enumerate(order))
     unit = search.box.unit
-    return Basins(
+    made = Basins(
         named,
         labels.reshape(shape),
         states * unit,
@@ -101,6 +104,9 @@ def basins(
         unit,
         {name: layout_of(system).column(name).unit for name in search.box.names},
     )
+    if found.interrupted:
+        raise SearchInterrupted(made, f"the {len(states)} starts, those not followed as open, are")
+    return made
 
 
 @dataclass(eq=False)
@@ -110,6 +116,7 @@ class Sorted:
     search: Search
     known: Motions | None
     count: int
+    interrupted: bool = field(default=False, init=False)
 
     def __post_init__(self) -> None:
         clock, unit = self.search.clock, self.search.box.width
@@ -136,6 +143,9 @@ class Sorted:
         with meter("basins", "starts", len(inside)) as show:
             for first in range(0, len(inside), AT_ONCE):
                 part = inside[first : first + AT_ONCE]
+                found[part] = Elsewhere.OPEN
+                if self.interrupted:
+                    continue
                 found[part], orbit[part], other[part] = self._part(states[part])
                 show(len(part), f"{len(self._orbits)} orbits")
         found[orbit >= 0] = orbit[orbit >= 0]
@@ -146,9 +156,13 @@ class Sorted:
         """Of some states whether they diverge, at which orbit they end, on which other attractor they are."""
         settling = self.search.settling(self.search.crowd.begin(states))
         settling.orbits = self._orbits
-        settling.run()
+        try:
+            settling.run()
+        except KeyboardInterrupt:
+            self.interrupted = True
         other = np.full(len(states), -1)
-        other[settling.left] = self._others.sorted_of(settling)
+        if not self.interrupted:
+            other[settling.left] = self._others.sorted_of(settling)
         plain = np.full(len(states), Elsewhere.OPEN)
         plain[settling.gone] = Elsewhere.DIVERGED
         return plain, settling.label, other

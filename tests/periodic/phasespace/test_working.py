@@ -17,6 +17,7 @@ import pytest
 
 import periodic as per
 import symbolic as sym
+from periodic.phasespace.settle import Settling
 from periodic.phasespace.stages import Stages
 from periodic.phasespace.unstable import Unstable
 from periodic.results.kept import Kept
@@ -248,3 +249,27 @@ def test_stores_that_are_refused(tmp_path: Path) -> None:
     refused("executor is 'many'", executor="many")
     with per.working(store=tmp_path / "a.db"):
         refused("something else is writing to it", store=tmp_path / "a.db")
+
+
+@needs_compiler
+def test_interrupted_basins_are_those_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert labels of starts that had arrived before Ctrl-C, and that the others are open."""
+    monkeypatch.setattr("periodic.phasespace.basins.AT_ONCE", 100)
+    given: dict[str, Any] = {"box": BOX, "starts": 250, "periods": 2}
+    whole = per.basins(sym.scene("gear-pair"), {"Omega": 0.7}, **given)
+    run, left = Settling.run, [1]
+
+    def stop(self: Settling) -> None:
+        left[0] -= 1
+        run(self)
+        if left[0] < 0:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Settling, "run", stop)
+    with pytest.raises(
+        per.phasespace.SearchInterrupted, match="the 250 starts, those not followed"
+    ) as caught:
+        per.basins(sym.scene("gear-pair"), {"Omega": 0.7}, **given)
+    found = caught.value.found
+    assert found.labels[:200].tolist() == whole.labels[:200].tolist()
+    assert (found.labels[200:] == per.phasespace.Elsewhere.OPEN).all()
