@@ -12,6 +12,7 @@ import symbolic as sym
 from reports.studies.motions.disc import BOX, RPM
 from reports.studies.motions.judge import STEPS, Oscillator, found, missed
 from reports.studies.motions.page import REPORT
+from reports.studies.motions.rub import TORUS, rotor
 from reports.studies.motions.tori import coupled
 
 pytestmark = pytest.mark.studies
@@ -24,7 +25,7 @@ def test_nothing_large_is_missed() -> None:
     kept = REPORT.kept(FOLDER)["judged"]
     above = [share for row in kept.rows for _, share in row["missed"] if share > 0.005]
     assert len(above) == kept.numbers["missed"] == 0
-    assert kept.numbers["oscillators"] == 20 and kept.numbers["attractors"] > 25
+    assert kept.numbers["oscillators"] == 50 and kept.numbers["attractors"] > 70
 
 
 @pytest.mark.parametrize("seed", [38, 44])
@@ -80,3 +81,14 @@ def test_basins_are_fresh() -> None:
     for row, motion in zip(rows, anew.motions, strict=True):
         error = np.sqrt(row["share"] * (1 - row["share"]) / 1000)
         assert motion.share == pytest.approx(row["share"], abs=4 * error)
+
+
+def test_rub_is_fresh() -> None:
+    """Assert a torus of the rub anew, and that of no start it is unknown where it leads."""
+    kept = REPORT.kept(FOLDER)["rub"]
+    assert all(row["undecided"] == 0 for row in kept.rows)
+    names = {name for row in kept.rows for name, *_ in row["stable"]}
+    assert {"stable, periodic", "stable, torus", "stable, chaotic"} <= names
+    torus = per.settled_torus(rotor(), {"speed": TORUS}, start={"x": 0.9})
+    assert torus.rotation_number == pytest.approx(kept.numbers["rotation"], rel=1e-8)
+    assert len(torus.breaks) == kept.numbers["breaks"] == 2
