@@ -36,9 +36,9 @@ from .orbit.sampling import sampled
 from .orbit.scheme import Family, Scheme
 from .phasespace.atlas import atlas
 from .phasespace.basins import basins
+from .phasespace.following.working import working
 from .phasespace.lyapunov import LyapunovError, lyapunov
 from .phasespace.motions import motions
-from .phasespace.working import working
 from .proof.proof import Proof, proved
 from .results.branch import Branch
 from .results.export.export import export

@@ -12,10 +12,10 @@ from periodic.correction.tolerance import Accuracy
 from periodic.display.htmltables import with_unit
 from periodic.display.meter import meter
 from periodic.orbit.layout import layout_of
-from periodic.phasespace.chart import Chart
-from periodic.phasespace.charted import Atlas
-from periodic.phasespace.search import search_of
-from periodic.phasespace.stages import SearchInterrupted
+from periodic.phasespace.atlases.chart import Chart
+from periodic.phasespace.atlases.charted import Atlas
+from periodic.phasespace.search.search import search_of
+from periodic.phasespace.search.stages import SearchInterrupted
 from periodic.system import System, index_of
 
 SETTLE = 1000

@@ -14,13 +14,13 @@ from periodic.correction.tolerance import Accuracy
 from periodic.display.meter import meter
 from periodic.orbit.layout import layout_of
 from periodic.orbit.scheme import Array
-from periodic.phasespace.aperiodic import Attractors
-from periodic.phasespace.box import Box, ahead
+from periodic.phasespace.following.box import Box, ahead
 from periodic.phasespace.motion import Motion, Motions, Sort, interval
 from periodic.phasespace.partition import Basins
 from periodic.phasespace.picture import Elsewhere
-from periodic.phasespace.search import Search, search_of
-from periodic.phasespace.stages import SearchInterrupted
+from periodic.phasespace.search.aperiodic import Attractors
+from periodic.phasespace.search.search import Search, search_of
+from periodic.phasespace.search.stages import SearchInterrupted
 from periodic.system import System
 
 AT_ONCE = 8192

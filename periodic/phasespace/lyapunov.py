@@ -17,8 +17,8 @@ from periodic.checks import named, number, one_of, whole
 from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
-from periodic.phasespace.crowd import Crowd
-from periodic.phasespace.values import parameters
+from periodic.phasespace.following.crowd import Crowd
+from periodic.phasespace.following.values import parameters
 from periodic.system import System, check_system
 from periodic.system.ensembles import FOLLOWED
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from periodic.correction.tolerance import Accuracy
 from periodic.display.meter import meter
 from periodic.phasespace.motion import Motions
-from periodic.phasespace.search import search_of
-from periodic.phasespace.stages import Stages
+from periodic.phasespace.search.search import search_of
+from periodic.phasespace.search.stages import Stages
 from periodic.system import System
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from periodic.checks import whole
 from periodic.orbit.scheme import Array
-from periodic.phasespace.crowd import Crowd
+from periodic.phasespace.following.crowd import Crowd
 from periodic.system import System
 from periodic.system.ensembles import FOLLOWED
 from periodic.tori.section import Function, Section, TorusError

@@ -11,7 +11,7 @@ from periodic.bifurcations.switching import FIRST_DISTANCE
 from periodic.checks import number, whole
 from periodic.orbit.layout import layout_of
 from periodic.orbit.scheme import Array
-from periodic.phasespace.crowd import Crowd
+from periodic.phasespace.following.crowd import Crowd
 from periodic.results.point import Point
 from periodic.system import System, check_system, index_of
 from periodic.tori.family import Family, family_of

@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 
 from periodic.orbit.scheme import Array
-from periodic.phasespace.crowd import Crowd
+from periodic.phasespace.following.crowd import Crowd
 from periodic.system import System
 from periodic.system.ensembles import FOLLOWED
 from periodic.system.precision import MOST_ITERATIONS

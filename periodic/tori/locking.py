@@ -8,10 +8,10 @@ import numpy as np
 
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
-from periodic.phasespace.crowd import Crowd
-from periodic.phasespace.fixedpoints import FixedPoints
-from periodic.phasespace.orbits import Completion
-from periodic.phasespace.recurrence import same
+from periodic.phasespace.following.crowd import Crowd
+from periodic.phasespace.orbits.completion import Completion
+from periodic.phasespace.orbits.recurrence import same
+from periodic.phasespace.search.fixedpoints import FixedPoints
 from periodic.results.point import Point
 from periodic.system.ensembles import FOLLOWED
 from periodic.tori.family import Family

@@ -15,10 +15,10 @@ from periodic.conditions.phase import excited
 from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
-from periodic.phasespace.birkhoff import lines
-from periodic.phasespace.crowd import Crowd
+from periodic.phasespace.following.crowd import Crowd
+from periodic.phasespace.following.values import parameters
 from periodic.phasespace.lyapunov import beginning
-from periodic.phasespace.values import parameters
+from periodic.phasespace.search.birkhoff import lines
 from periodic.system import System, check_system
 from periodic.system.ensembles import FOLLOWED
 from periodic.tori.born import check_angles

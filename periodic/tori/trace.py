@@ -12,7 +12,7 @@ from periodic.checks import number, two, whole
 from periodic.display.meter import meter
 from periodic.orbit.layout import layout_of
 from periodic.orbit.scheme import Array
-from periodic.phasespace.values import parameters
+from periodic.phasespace.following.values import parameters
 from periodic.results.point import Point
 from periodic.system import System, check_system, check_value, index_of
 from periodic.tori.family import Family, family_of, not_resolved

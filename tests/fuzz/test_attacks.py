@@ -350,7 +350,7 @@ def test_the_reader_is_one() -> None:
 
 PICKLES = {
     "periodic/maps/chunks.py": ["loads"],
-    "periodic/phasespace/shared.py": ["loads"],
+    "periodic/phasespace/following/shared.py": ["loads"],
     "periodic/workers/parcel.py": ["dumps"],
 }
 """Where anything is pickled: a task, on its way to processes that this one has started or asked."""

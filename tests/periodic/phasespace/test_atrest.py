@@ -8,7 +8,7 @@ from support.oscillators import X, oscillator
 
 import symbolic as sym
 from periodic.orbit.orbit import FORCED
-from periodic.phasespace.atrest import at_rest
+from periodic.phasespace.search.atrest import at_rest
 
 pytestmark = pytest.mark.usefixtures("users_kernels")
 

@@ -11,8 +11,8 @@ from support.oscillators import SYSTEMS, X, oscillator
 
 import periodic as per
 import symbolic as sym
-from periodic.phasespace.crowd import Crowd
-from periodic.phasespace.onebyone import OneByOne
+from periodic.phasespace.following.crowd import Crowd
+from periodic.phasespace.following.onebyone import OneByOne
 
 pytestmark = pytest.mark.usefixtures("users_kernels")
 

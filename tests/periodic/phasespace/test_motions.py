@@ -11,9 +11,9 @@ from support.oscillators import X, oscillator
 
 import periodic as per
 import symbolic as sym
-from periodic.phasespace.aperiodic import Attractor
-from periodic.phasespace.birkhoff import digits, rotation_number
-from periodic.phasespace.recurrence import period, return_time
+from periodic.phasespace.orbits.recurrence import period, return_time
+from periodic.phasespace.search.aperiodic import Attractor
+from periodic.phasespace.search.birkhoff import digits, rotation_number
 from reports.studies.motions import known
 from reports.studies.motions.judge import Oscillator
 

@@ -12,7 +12,7 @@ import scipy
 
 import periodic as per
 import symbolic as sym
-from periodic.phasespace.crowd import Crowd
+from periodic.phasespace.following.crowd import Crowd
 from reports.studies.motions.rub import BOX as RUB_BOX
 from reports.studies.motions.rub import rotor
 

@@ -11,9 +11,9 @@ from support.kept import kept
 
 import periodic as per
 import symbolic as sym
-from periodic.phasespace.aperiodicranges import aperiodic_ranges
+from periodic.phasespace.atlases.aperiodicranges import aperiodic_ranges
+from periodic.phasespace.atlases.stretches import End, ends, stretches
 from periodic.phasespace.motion import Sort
-from periodic.phasespace.stretches import End, ends, stretches
 from periodic.results.stop import Reason
 
 pytestmark = pytest.mark.usefixtures("users_kernels")

@@ -12,8 +12,8 @@ from support.oscillators import X, Y, oscillator, two_with_friction
 
 import periodic as per
 import symbolic as sym
-from periodic.phasespace.search import search_of
-from periodic.phasespace.symmetries import candidates, symmetries_of
+from periodic.phasespace.search.search import search_of
+from periodic.phasespace.search.symmetries import candidates, symmetries_of
 from reports.studies.motions import known
 
 pytestmark = pytest.mark.usefixtures("users_kernels")

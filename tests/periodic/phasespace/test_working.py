@@ -17,9 +17,9 @@ import pytest
 
 import periodic as per
 import symbolic as sym
-from periodic.phasespace.settle import Settling
-from periodic.phasespace.stages import Stages
-from periodic.phasespace.unstable import Unstable
+from periodic.phasespace.search.settle import Settling
+from periodic.phasespace.search.stages import Stages
+from periodic.phasespace.search.unstable import Unstable
 from periodic.results.kept import Kept
 from symbolic.kernels import native
 
@@ -61,7 +61,7 @@ def test_kept_motions_are_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     with per.working(store=tmp_path / "search.db"):
         assert bits(gears()) == bits(here)
     size = (tmp_path / "search.db").stat().st_size
-    monkeypatch.setattr("periodic.phasespace.parts.Part.followed", None)
+    monkeypatch.setattr("periodic.phasespace.following.parts.Part.followed", None)
     with per.working(store=tmp_path / "search.db"):
         assert bits(gears()) == bits(here)
     assert (tmp_path / "search.db").stat().st_size == size
@@ -81,8 +81,8 @@ def test_atlas_and_basins_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
     with per.working(store=tmp_path / "a.db"):
         first = both()
-    monkeypatch.setattr("periodic.phasespace.parts.Part.followed", None)
-    monkeypatch.setattr("periodic.phasespace.traced.trace", None)
+    monkeypatch.setattr("periodic.phasespace.following.parts.Part.followed", None)
+    monkeypatch.setattr("periodic.phasespace.following.traced.trace", None)
     with per.working(store=tmp_path / "a.db"):
         assert both() == first
 

@@ -13,7 +13,7 @@ from support.oscillators import X
 
 import periodic as per
 import symbolic as sym
-from periodic.phasespace.crowd import Crowd
+from periodic.phasespace.following.crowd import Crowd
 from periodic.tori import settled, trace
 from periodic.tori.grid import TURN, Grid
 

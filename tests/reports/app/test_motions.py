@@ -10,8 +10,8 @@ import pytest
 
 import periodic as per
 import symbolic as sym
-from periodic.phasespace.stages import Stages
-from periodic.phasespace.unstable import Unstable
+from periodic.phasespace.search.stages import Stages
+from periodic.phasespace.search.unstable import Unstable
 from reports.app.cli import main
 from symbolic.kernels import native
 

@@ -9,8 +9,8 @@ from periodic.checks import two
 from periodic.correction.condition import Condition
 from periodic.correction.outcome import FAILURES
 from periodic.orbit.orbit import FORCED
-from periodic.phasespace.settle import Settling
-from periodic.phasespace.traced import traced
+from periodic.phasespace.following.traced import traced
+from periodic.phasespace.search.settle import Settling
 from periodic.results.branch import Branch
 from periodic.system import index_of
 

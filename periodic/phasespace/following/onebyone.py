@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from periodic.orbit.scheme import Array
-from periodic.phasespace.parts import Each
+from periodic.phasespace.following.parts import Each
 from periodic.system import Moving, surfaces_of
 from periodic.system.ensembles import DIVERGED, FOLLOWED, LOST
 

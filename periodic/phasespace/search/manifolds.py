@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from periodic.orbit.scheme import Array
-from periodic.phasespace.known import Known
-from periodic.phasespace.settle import Settling
+from periodic.phasespace.orbits.known import Known
+from periodic.phasespace.search.settle import Settling
 
 BESIDE = 1e-4
 """How far from an orbit motions start, in units of the states."""

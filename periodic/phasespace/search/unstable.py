@@ -8,12 +8,12 @@ import numpy as np
 
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
-from periodic.phasespace.atrest import at_rest
-from periodic.phasespace.box import Box
-from periodic.phasespace.clocks import NEAR, PART
-from periodic.phasespace.fixedpoints import FixedPoints
-from periodic.phasespace.recurrence import same
-from periodic.phasespace.settle import Settling
+from periodic.phasespace.following.box import Box
+from periodic.phasespace.orbits.clocks import NEAR, PART
+from periodic.phasespace.orbits.recurrence import same
+from periodic.phasespace.search.atrest import at_rest
+from periodic.phasespace.search.fixedpoints import FixedPoints
+from periodic.phasespace.search.settle import Settling
 
 PHASES = 16
 """Phases of which the mean of the equations is taken."""

@@ -9,9 +9,9 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from periodic.orbit.scheme import Array
-from periodic.phasespace.clocks import NEAR, PART, Clock
-from periodic.phasespace.crowd import Crowd
-from periodic.phasespace.known import Known, Orbits
+from periodic.phasespace.following.crowd import Crowd
+from periodic.phasespace.orbits.clocks import NEAR, PART, Clock
+from periodic.phasespace.orbits.known import Known, Orbits
 from periodic.results.point import Point
 from periodic.system import STUCK, surfaces_of
 from periodic.system.ensembles import DIVERGED, FOLLOWED

@@ -13,14 +13,14 @@ from periodic.conditions.phase import PhaseCondition, excited
 from periodic.correction.condition import Condition
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
-from periodic.phasespace.box import Box, box_of
-from periodic.phasespace.clocks import Clock, Forced, Free
-from periodic.phasespace.crowd import Crowd
-from periodic.phasespace.known import Known, Orbits
+from periodic.phasespace.following.box import Box, box_of
+from periodic.phasespace.following.crowd import Crowd
+from periodic.phasespace.following.values import parameters
 from periodic.phasespace.motion import Motion, Sort, interval
-from periodic.phasespace.orbits import Completion
-from periodic.phasespace.settle import Settling
-from periodic.phasespace.values import parameters
+from periodic.phasespace.orbits.clocks import Clock, Forced, Free
+from periodic.phasespace.orbits.completion import Completion
+from periodic.phasespace.orbits.known import Known, Orbits
+from periodic.phasespace.search.settle import Settling
 from periodic.system import System, check_system, frequency_of
 
 FINER = 100.0

@@ -10,13 +10,13 @@ from periodic.correction.outcome import FAILURES
 from periodic.display.meter import Advance
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
-from periodic.phasespace.box import box_of
+from periodic.phasespace.atlases.sheet import Sheet
+from periodic.phasespace.atlases.stretches import stretches
+from periodic.phasespace.following.box import box_of
+from periodic.phasespace.following.traced import traced
 from periodic.phasespace.motion import Motion, Motions, Sort
-from periodic.phasespace.search import Search
-from periodic.phasespace.sheet import Sheet
-from periodic.phasespace.stages import Stages
-from periodic.phasespace.stretches import stretches
-from periodic.phasespace.traced import traced
+from periodic.phasespace.search.search import Search
+from periodic.phasespace.search.stages import Stages
 from periodic.results.branch import Branch
 from periodic.system import index_of
 from periodic.tracing.steps.stepsize import ArclengthControl

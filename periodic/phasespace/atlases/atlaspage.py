@@ -9,9 +9,9 @@ import numpy as np
 
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
+from periodic.phasespace.atlases.sheet import Sheet
+from periodic.phasespace.atlases.stretches import LETTERS, PLAIN
 from periodic.phasespace.motion import Motion, Motions
-from periodic.phasespace.sheet import Sheet
-from periodic.phasespace.stretches import LETTERS, PLAIN
 from periodic.results.interactive.pictures import Line, Picture, Place, Shown, Style
 from periodic.results.point import Point
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from periodic.orbit.scheme import Array
-from periodic.phasespace.atrest import at_rest
-from periodic.phasespace.box import Box
-from periodic.phasespace.clocks import PER_TURN
-from periodic.phasespace.settle import Settling
+from periodic.phasespace.following.box import Box
+from periodic.phasespace.orbits.clocks import PER_TURN
+from periodic.phasespace.search.atrest import at_rest
+from periodic.phasespace.search.settle import Settling
 
 RETURN = 0.1
 """Distance between a motion and itself later that may be a cycle nearby, in its size."""

@@ -8,9 +8,9 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
 from typing import Protocol
 
-from periodic.phasespace.onebyone import OneByOne
-from periodic.phasespace.parts import Part, arrays_of, of_arrays
-from periodic.phasespace.working import Work, WorkStoppedError, work
+from periodic.phasespace.following.onebyone import OneByOne
+from periodic.phasespace.following.parts import Part, arrays_of, of_arrays
+from periodic.phasespace.following.working import Work, WorkStoppedError, work
 from periodic.system.ensembles import EnsembleLike, FollowedLike
 from periodic.workers.cores import cores
 from periodic.workers.execution import DIED, Execution, ExecutorGoneError

@@ -13,11 +13,11 @@ from scipy.spatial import KDTree
 
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
-from periodic.phasespace.crowd import Crowd
-from periodic.phasespace.known import Known
+from periodic.phasespace.following.crowd import Crowd
 from periodic.phasespace.motion import Motion
-from periodic.phasespace.orbits import Completion
-from periodic.phasespace.recurrence import apart, period, return_time, same
+from periodic.phasespace.orbits.completion import Completion
+from periodic.phasespace.orbits.known import Known
+from periodic.phasespace.orbits.recurrence import apart, period, return_time, same
 from periodic.results.point import Point
 
 NEAR = 1e-3

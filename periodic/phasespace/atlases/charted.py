@@ -9,11 +9,11 @@ import numpy as np
 
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
-from periodic.phasespace.aperiodicranges import aperiodic_ranges
-from periodic.phasespace.atlaspage import shown
+from periodic.phasespace.atlases.aperiodicranges import aperiodic_ranges
+from periodic.phasespace.atlases.atlaspage import shown
+from periodic.phasespace.atlases.sheet import Sheet
+from periodic.phasespace.atlases.stretches import LETTERS, PLAIN, End, ends, stretches
 from periodic.phasespace.motion import Motions
-from periodic.phasespace.sheet import Sheet
-from periodic.phasespace.stretches import LETTERS, PLAIN, End, ends, stretches
 from periodic.results.interactive.pictures import Shown
 from periodic.results.plots.frame import dressed
 from periodic.results.point import Point

@@ -10,12 +10,12 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from periodic.orbit.scheme import Array
-from periodic.phasespace.birkhoff import DIGITS, digits, rotation_number
-from periodic.phasespace.clocks import Clock
-from periodic.phasespace.crowd import Crowd
+from periodic.phasespace.following.crowd import Crowd
 from periodic.phasespace.lyapunov import SIGMAS, LyapunovError, exponents_of, rate_of
 from periodic.phasespace.motion import Motion, Sort, interval
-from periodic.phasespace.settle import Settling
+from periodic.phasespace.orbits.clocks import Clock
+from periodic.phasespace.search.birkhoff import DIGITS, digits, rotation_number
+from periodic.phasespace.search.settle import Settling
 from periodic.system.ensembles import FOLLOWED
 
 LENGTHS = (4000, 8000, 16000, 32000)

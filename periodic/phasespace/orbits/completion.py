@@ -20,8 +20,8 @@ from periodic.orbit.mesh import uniform
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array, Scheme
-from periodic.phasespace.crowd import Crowd
-from periodic.phasespace.traced import traced
+from periodic.phasespace.following.crowd import Crowd
+from periodic.phasespace.following.traced import traced
 from periodic.results.point import Point
 from periodic.system import Moving, System, check_value
 from periodic.tracing.continuation import RepeatsError

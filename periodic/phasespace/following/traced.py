@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from periodic.correction.condition import Condition
 from periodic.correction.discretisation import Discretisation
 from periodic.orbit.orbit import Orbit
-from periodic.phasespace.crowd import Crowd
-from periodic.phasespace.working import work
+from periodic.phasespace.following.crowd import Crowd
+from periodic.phasespace.following.working import work
 from periodic.results.branch import Branch
 from periodic.results.described import described
 from periodic.results.files import digest

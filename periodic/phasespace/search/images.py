@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from periodic.orbit.scheme import Array
-from periodic.phasespace.aperiodic import Attractors
-from periodic.phasespace.clocks import NEAR, PART
-from periodic.phasespace.known import Known
 from periodic.phasespace.motion import Motion
-from periodic.phasespace.settle import Settling
-from periodic.phasespace.symmetries import Symmetry
+from periodic.phasespace.orbits.clocks import NEAR, PART
+from periodic.phasespace.orbits.known import Known
+from periodic.phasespace.search.aperiodic import Attractors
+from periodic.phasespace.search.settle import Settling
+from periodic.phasespace.search.symmetries import Symmetry
 
 
 @dataclass(frozen=True, eq=False)

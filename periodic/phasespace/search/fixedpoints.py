@@ -14,7 +14,7 @@ import numpy as np
 
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
-from periodic.phasespace.crowd import Crowd
+from periodic.phasespace.following.crowd import Crowd
 from periodic.system.ensembles import FOLLOWED
 
 ITERATIONS = 60

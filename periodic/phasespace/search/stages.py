@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 
 from periodic.checks import named
-from periodic.phasespace.aperiodic import Attractors
-from periodic.phasespace.images import Images
-from periodic.phasespace.manifolds import Manifolds
 from periodic.phasespace.motion import Motions
-from periodic.phasespace.round import Round
-from periodic.phasespace.search import Search
-from periodic.phasespace.settle import Settling
-from periodic.phasespace.symmetries import Symmetry, symmetries_of
-from periodic.phasespace.unexcited import Unexcited
-from periodic.phasespace.unstable import Unstable
+from periodic.phasespace.search.aperiodic import Attractors
+from periodic.phasespace.search.images import Images
+from periodic.phasespace.search.manifolds import Manifolds
+from periodic.phasespace.search.round import Round
+from periodic.phasespace.search.search import Search
+from periodic.phasespace.search.settle import Settling
+from periodic.phasespace.search.symmetries import Symmetry, symmetries_of
+from periodic.phasespace.search.unexcited import Unexcited
+from periodic.phasespace.search.unstable import Unstable
 
 Stage = tuple[str, Callable[[], str]]
 """What is tried next, and what tries it and says in words what was tried."""

@@ -15,8 +15,8 @@ import numpy as np
 
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
-from periodic.phasespace.box import Box
-from periodic.phasespace.crowd import Crowd
+from periodic.phasespace.following.box import Box
+from periodic.phasespace.following.crowd import Crowd
 from periodic.system.ensembles import FOLLOWED
 
 PERMUTED, SIGNED = 3, 6

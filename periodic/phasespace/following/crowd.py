@@ -9,9 +9,9 @@ from typing import Any, cast
 
 from periodic.checks import between
 from periodic.orbit.scheme import Array
-from periodic.phasespace.onebyone import OneByOne
-from periodic.phasespace.parts import Part, Targets, joined
-from periodic.phasespace.shared import followed
+from periodic.phasespace.following.onebyone import OneByOne
+from periodic.phasespace.following.parts import Part, Targets, joined
+from periodic.phasespace.following.shared import followed
 from periodic.results.files import digest
 from periodic.results.identity import identity, versions
 from periodic.system import Ensembling, Moving, System

@@ -1,0 +1,1 @@
+"""What an atlas is made of: branches with their stable stretches, what is said of them, their page."""
