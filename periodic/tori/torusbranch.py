@@ -74,14 +74,14 @@ class TorusBranch(Sequence[TorusPoint]):
         rows = [self._row(point) for point in self.points[::step]]
         return table(self._headings, rows) + "".join(paragraph(stop) for stop in self.stops)
 
-    def titled(self, parameter: str) -> str:
-        """Return a parameter's name with its unit."""
+    def _titled(self, parameter: str) -> str:
+        """A parameter's name with its unit."""
         known = {q.name: q.unit for q in self.points[0].torus.layout.parameters}
         return with_unit(parameter, known[parameter])
 
     @property
     def _headings(self) -> tuple[str, ...]:
-        names = [self.titled(name) for name in (self.parameter, self.released) if name]
+        names = [self._titled(name) for name in (self.parameter, self.released) if name]
         return (*names, "rotation number", "size", "largest modulus", "stable", "angles", "tail", "")
 
     def _row(self, point: TorusPoint) -> tuple[str, ...]:
@@ -126,7 +126,7 @@ class TorusBranch(Sequence[TorusPoint]):
 
     def shown(self, system: System | None = None) -> Shown:
         """Return what the page of it shows: see `per.page`."""
-        titles = [self.titled(name) for name in (self.parameter, self.released) if name]
+        titles = [self._titled(name) for name in (self.parameter, self.released) if name]
         said = [f"begins: {self.stops[0]}", f"ends: {self.stops[1]}"]
         return family_shown(said, self.points, titles, self.released, system)
 
@@ -155,4 +155,4 @@ class TorusBranch(Sequence[TorusPoint]):
             if marked:
                 at = [point.parameter for point in marked], [point.torus.size for point in marked]
                 axes.plot(*at, "os^D"[k], color="C3", label=label)
-        return dressed(axes, self.titled(self.parameter), "size of the section (scaled)")
+        return dressed(axes, self._titled(self.parameter), "size of the section (scaled)")

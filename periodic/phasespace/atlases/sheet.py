@@ -43,7 +43,20 @@ class Sheet:
         return "one period" if self.periods == 1 else f"{self.periods} periods"
 
     def curve(self, heights: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
-        """Return a smooth curve of a height at each point over the parameter, and where it is stable."""
+        """Return a smooth curve of a height over the parameter, through the points, and where it is stable.
+
+        Parameters
+        ----------
+        heights : ndarray
+            The height at each point of the branch, (K,).
+
+        Returns
+        -------
+        across, up : ndarray, shape (N,)
+            The curve.
+        stable : ndarray of bool, shape (N,)
+            Whether it is stable from each sample to the next.
+        """
         across, up = smooth(self.branch.values, heights, FINER)
         stable = np.repeat(self.branch.stable_between, FINER)
         return across, up, np.append(stable, stable[-1:]) if len(stable) else self.branch.stable
